@@ -1,0 +1,21 @@
+# Every third-party package in one place, so that modules only name targets.
+find_package(Threads REQUIRED)
+find_package(MPI COMPONENTS C QUIET)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(TBB REQUIRED)
+find_package(fmt REQUIRED)
+find_package(tl-expected QUIET)
+find_package(yaml-cpp REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(Ceres REQUIRED)
+find_package(embree 3 REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+set(PCL_FIND_QUIETLY ON)
+find_package(PCL 1.13 REQUIRED COMPONENTS common io features keypoints registration QUIET)
+
+# PCL's include directories and definitions behind one target; PUBLIC headers of ours never name it.
+add_library(isthmus_pcl INTERFACE)
+target_include_directories(isthmus_pcl SYSTEM INTERFACE ${PCL_INCLUDE_DIRS})
+target_link_libraries(isthmus_pcl INTERFACE ${PCL_LIBRARIES})

@@ -1,0 +1,29 @@
+// Keypoints and descriptors of one scan.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace isthmus {
+
+/// A direction along which a scan is organised: the vertical of a levelled scan, the axes of a building.
+struct DominantAxis {
+  Eigen::Vector3f direction = Eigen::Vector3f::Zero();  ///< unit; sign: most points' normals along it agree
+  float weight = 0;      ///< share of points whose normals are parallel or perpendicular to it
+  float sigma_rad = 0;   ///< uncertainty of the direction
+  template <class F>
+  void fields(F&& f) { f(direction), f(weight), f(sigma_rad); }
+};
+
+struct FeatureCloud {
+  std::vector<std::uint32_t> keypoints;  ///< indices into SampledScan::points, ascending
+  std::vector<float> saliency;           ///< per keypoint; 0 for those added by the top-up
+  std::uint32_t dimension = 0;           ///< floats per descriptor
+  std::vector<float> descriptors;        ///< keypoints.size() x dimension, a row per keypoint, each row of unit length
+  std::vector<DominantAxis> axes;        ///< most likely vertical first; empty when the scan shows none
+  template <class F>
+  void fields(F&& f) { f(keypoints), f(saliency), f(dimension), f(descriptors), f(axes); }
+};
+
+}  // namespace isthmus

@@ -1,0 +1,70 @@
+// Opening scans: a path becomes one or more scans, a scan becomes chunks of points in its own frame.
+//
+// Frames. "scan" is the frame of the coordinates as stored in the file (double). "local" is that frame shifted by
+// `local_origin_in_scan`, chosen by the reader from the header or the first points so that floats lose nothing (zero for
+// formats that already store small coordinates): p_in_scan = p_in_local.cast<double>() + local_origin_in_scan.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "geometry/transform.h"
+
+namespace isthmus::io {
+
+/// One scan of one file.
+struct ScanRef {
+  std::filesystem::path path;
+  int index = 0;     ///< which scan of the file, from 0
+  std::string name;  ///< path relative to the input folder with extension, "#k" when the file holds several, percent-encoded
+};
+
+struct ScanHeader {
+  std::string format;                       ///< "ply", "pcd", "ptx", ...
+  std::optional<std::uint64_t> num_points;  ///< by the file's own header
+  Eigen::Vector3d local_origin_in_scan = Eigen::Vector3d::Zero();
+  std::optional<Eigen::Vector3d> station_in_scan;  ///< where the file says the scanner stood (PCD VIEWPOINT, PTX: zero)
+  std::optional<Transform> file_from_scan;         ///< the registered pose the file stores for the scan, if any
+  bool has_intensity = false;
+  bool has_colour = false;
+  std::vector<std::string> notes;  ///< what was detected or assumed: "columns x y z intensity, delimiter ','"
+};
+
+/// Points as structure of arrays; optional arrays are empty or as long as `points`.
+struct PointChunk {
+  std::vector<Eigen::Vector3f> points;  ///< in the local frame, metres as stored; may hold NaN: the sampler drops them
+  std::vector<float> intensity;
+  std::vector<std::array<std::uint8_t, 3>> colour;
+  void clear() {
+    points.clear();
+    intensity.clear();
+    colour.clear();
+  }
+};
+
+/// Streams one scan. Not shared between threads.
+class ScanReader {
+ public:
+  virtual ~ScanReader() = default;
+  [[nodiscard]] virtual const ScanHeader& header() const = 0;
+  /// Replaces `chunk` by up to `max_points` next points; an empty chunk means the end. An error ends the reading.
+  virtual Result<void> read(PointChunk& chunk, std::size_t max_points) = 0;
+};
+
+/// The scans of one file (several for PTX), from headers alone where the format allows.
+Result<std::vector<ScanRef>> scans_of_file(const std::filesystem::path& path);
+
+Result<std::unique_ptr<ScanReader>> open_scan(const ScanRef& scan);
+
+/// About `max_points` points spread evenly over the file, without reading all of it where the format allows (fixed-size
+/// records: strides; text: blocks at even offsets). Deterministic. For choosing parameters before the real reading.
+Result<PointChunk> probe_scan(const ScanRef& scan, std::size_t max_points);
+
+}  // namespace isthmus::io

@@ -1,0 +1,42 @@
+// One scan after streaming voxel sampling: what every later stage works on.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace isthmus {
+
+/// Where the scanner stood, and how we know.
+enum class StationKind : std::uint8_t {
+  unknown,    ///< no single viewpoint explains the points (fused, cut or merged clouds): no free space is used
+  origin,     ///< the scan's origin (or the file's own word), confirmed by the points: each direction shows one surface
+  estimated,  ///< another viewpoint found from the points (single-view range images whose origin is elsewhere)
+};
+
+/// Voxel centroids with normals, in the scan's local frame (see io/scan_reader.h), metres.
+struct SampledScan {
+  double voxel_m = 0;                                          ///< edge of the sampling voxels
+  Eigen::Vector3d local_origin_in_scan = Eigen::Vector3d::Zero();
+  StationKind station_kind = StationKind::unknown;
+  Eigen::Vector3f station = Eigen::Vector3f::Zero();           ///< in the local frame; meaningful unless unknown
+  std::vector<Eigen::Vector3f> points;                         ///< one centroid per voxel, sorted by voxel index
+  std::vector<Eigen::Vector3f> normals;                        ///< unit, oriented to the station
+  std::vector<float> planarity;                                ///< surface variation lambda0/(l0+l1+l2), 0 = plane
+  std::vector<std::uint32_t> counts;                           ///< raw points per voxel
+  double spacing_m = 0;                                        ///< median distance to the nearest neighbour of raw points
+  std::uint64_t num_read = 0;                                  ///< points in the file
+  std::uint64_t num_dropped = 0;                               ///< NaN, at the origin, no-return shells
+  std::optional<double> no_return_range_m;                     ///< a shell of constant range that was dropped
+  std::vector<std::string> notes;                              ///< for the log and the report
+
+  template <class F>
+  void fields(F&& f) {
+    f(voxel_m), f(local_origin_in_scan), f(station_kind), f(station), f(points), f(normals), f(planarity), f(counts);
+    f(spacing_m), f(num_read), f(num_dropped), f(no_return_range_m), f(notes);
+  }
+};
+
+}  // namespace isthmus

@@ -16,6 +16,15 @@ enum class StationKind : std::uint8_t {
   estimated,  ///< another viewpoint found from the points (single-view range images whose origin is elsewhere)
 };
 
+/// What the scanner looked through: for each direction from the station the nearest range at which anything was seen.
+/// A cube map of 6 faces with size x size cells (about 90 / size degrees each); +inf where nothing came back.
+struct FreeSpace {
+  std::uint32_t size = 0;
+  std::vector<float> nearest_m;  ///< 6 * size * size, the minimum over a cell and its neighbours
+  template <class F>
+  void fields(F&& f) { f(size), f(nearest_m); }
+};
+
 /// Voxel centroids with normals, in the scan's local frame (see io/scan_reader.h), metres.
 struct SampledScan {
   double voxel_m = 0;                                          ///< edge of the sampling voxels
@@ -24,8 +33,9 @@ struct SampledScan {
   Eigen::Vector3f station = Eigen::Vector3f::Zero();           ///< in the local frame; meaningful unless unknown
   std::vector<Eigen::Vector3f> points;                         ///< one centroid per voxel, sorted by voxel index
   std::vector<Eigen::Vector3f> normals;                        ///< unit, oriented to the station
-  std::vector<float> planarity;                                ///< surface variation lambda0/(l0+l1+l2), 0 = plane
+  std::vector<float> variation;                                ///< surface variation l0/(l0+l1+l2): 0 plane, 1/3 scatter; 1: no normal
   std::vector<std::uint32_t> counts;                           ///< raw points per voxel
+  FreeSpace free_space;                                        ///< empty when the station is unknown
   double spacing_m = 0;                                        ///< median distance to the nearest neighbour of raw points
   std::uint64_t num_read = 0;                                  ///< points in the file
   std::uint64_t num_dropped = 0;                               ///< NaN, at the origin, no-return shells
@@ -34,7 +44,7 @@ struct SampledScan {
 
   template <class F>
   void fields(F&& f) {
-    f(voxel_m), f(local_origin_in_scan), f(station_kind), f(station), f(points), f(normals), f(planarity), f(counts);
+    f(voxel_m), f(local_origin_in_scan), f(station_kind), f(station), f(points), f(normals), f(variation), f(counts), f(free_space);
     f(spacing_m), f(num_read), f(num_dropped), f(no_return_range_m), f(notes);
   }
 };

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "config/option_table.h"
-#include "io/scan_reader.h"
+#include "scan/point_chunk.h"
 #include "scan/sampled_scan.h"
 
 namespace isthmus {
@@ -25,7 +25,7 @@ struct ScanScale {
   double spacing_m = 0;  ///< lower bound for the voxel: the probe's estimate of the raw spacing (0 = dense)
   double extent_m = 0;   ///< robust extent (5 % to 95 % box diagonal)
 };
-Result<ScanScale> scale_of_probe(const io::PointChunk& probe, std::optional<std::uint64_t> num_points, int target_points);
+Result<ScanScale> scale_of_probe(const PointChunk& probe, std::optional<std::uint64_t> num_points, int target_points);
 
 /// One voxel for all scans of a survey, from their scales in any order: a robust middle, rounded to a coarse geometric series
 /// so that one more scan seldom changes it. Precondition: at least one scale.
@@ -35,9 +35,9 @@ double automatic_voxel_m(std::span<const ScanScale> scales);
 class VoxelSampler {
  public:
   /// `header` gives frames and the station the file states; voxel_m > 0.
-  VoxelSampler(const io::ScanHeader& header, double voxel_m, const SamplingOptions& options);
+  VoxelSampler(const ScanHeader& header, double voxel_m, const SamplingOptions& options);
   ~VoxelSampler();
-  void add(const io::PointChunk& chunk);
+  void add(const PointChunk& chunk);
   /// Normals, station and notes. Fails if fewer than 10 voxels are occupied (empty or degenerate scan). Call once.
   Result<SampledScan> finish();
   [[nodiscard]] std::size_t bytes() const;  ///< memory held now

@@ -1,0 +1,78 @@
+#include "geometry/surface_lookup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isthmus {
+namespace {
+
+// A grid of blocks is dense; far outliers are left out rather than letting it grow beyond this.
+constexpr std::size_t kMaxBlocks = std::size_t{1} << 22;
+
+struct Box {
+  Eigen::Vector3f low = Eigen::Vector3f::Constant(std::numeric_limits<float>::infinity());
+  Eigen::Vector3f high = Eigen::Vector3f::Constant(-std::numeric_limits<float>::infinity());
+};
+
+std::size_t num_blocks(const Box& box, float cell_m) {
+  std::size_t n = 1;
+  for (int a = 0; a < 3; ++a) n *= static_cast<std::size_t>((box.high[a] - box.low[a]) / (8 * cell_m)) + 1;
+  return n;
+}
+
+}  // namespace
+
+SurfaceLookup::SurfaceLookup(std::span<const Eigen::Vector3f> points, float cell_m, int reach_cells)
+    : inverse_cell_(1.0f / cell_m) {
+  if (points.empty()) return;
+  Box box;
+  for (const auto& p : points) box.low = box.low.cwiseMin(p), box.high = box.high.cwiseMax(p);
+  const float margin = cell_m * static_cast<float>(reach_cells + 1);
+  box.low.array() -= margin, box.high.array() += margin;
+  if (num_blocks(box, cell_m) > kMaxBlocks) {  // keep the central 99.8 % along each axis
+    std::vector<float> values(points.size());
+    for (int a = 0; a < 3; ++a) {
+      for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i][a];
+      std::sort(values.begin(), values.end());
+      box.low[a] = values[values.size() / 1000] - margin;
+      box.high[a] = values[values.size() - 1 - values.size() / 1000] + margin;
+    }
+  }
+  while (num_blocks(box, cell_m) > kMaxBlocks) {  // still too wide: shrink towards the middle
+    const Eigen::Vector3f middle = 0.5f * (box.low + box.high), half = 0.4f * (box.high - box.low);
+    box.low = middle - half, box.high = middle + half;
+  }
+  low_ = box.low;
+  for (int a = 0; a < 3; ++a)
+    size_[a] = static_cast<std::uint32_t>((box.high[a] - box.low[a]) * inverse_cell_ / 8) + 1;
+  blocks_.assign(static_cast<std::size_t>(size_[0]) * size_[1] * size_[2], -1);
+  std::vector<float> sq_distance;
+  const Eigen::Array3i limit(static_cast<int>(size_[0]) * 8, static_cast<int>(size_[1]) * 8, static_cast<int>(size_[2]) * 8);
+  const float reach_m = cell_m * (static_cast<float>(reach_cells) + 0.5f);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3f g = (points[i] - low_) * inverse_cell_;
+    if (!((g.array() >= 0).all()) || !((g.array() < limit.cast<float>()).all())) continue;
+    const Eigen::Array3i c = g.array().floor().cast<int>();
+    const Eigen::Array3i from = (c - reach_cells).max(0), to = (c + reach_cells).min(limit - 1);
+    for (int z = from[2]; z <= to[2]; ++z)
+      for (int y = from[1]; y <= to[1]; ++y)
+        for (int x = from[0]; x <= to[0]; ++x) {
+          const Eigen::Vector3f centre =
+              low_ + cell_m * (Eigen::Vector3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)) +
+                               Eigen::Vector3f::Constant(0.5f));
+          const float sq = (points[i] - centre).squaredNorm();
+          if (sq > reach_m * reach_m) continue;
+          std::int32_t& block = blocks_[(static_cast<std::size_t>(z >> 3) * size_[1] + (y >> 3)) * size_[0] + (x >> 3)];
+          if (block < 0) {
+            block = static_cast<std::int32_t>(cells_.size() / 512);
+            cells_.resize(cells_.size() + 512, -1);
+            sq_distance.resize(cells_.size(), std::numeric_limits<float>::infinity());
+          }
+          const std::size_t k = static_cast<std::size_t>(block) * 512 + ((z & 7) << 6 | (y & 7) << 3 | (x & 7));
+          if (sq < sq_distance[k]) sq_distance[k] = sq, cells_[k] = static_cast<std::int32_t>(i);
+        }
+  }
+}
+
+}  // namespace isthmus

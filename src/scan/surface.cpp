@@ -1,0 +1,109 @@
+#include "scan/surface.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <queue>
+#include <tuple>
+
+#include "base/parallel.h"
+#include "geometry/point_grid.h"
+
+namespace isthmus {
+namespace {
+
+constexpr float kRadiiVoxels[] = {2.2f, 3.2f, 4.5f};
+constexpr std::size_t kMinNeighbours = 6;
+constexpr float kLineRatio = 0.04f;  // middle over largest eigenvalue: below it the neighbours lie on a line
+
+struct Local {
+  Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();
+  float variation = 1;
+  std::uint32_t neighbours = 0;
+  bool good = false;
+};
+
+Local fit(std::span<const VoxelMoments> voxels, const PointGrid& grid, std::size_t i, float radius_m) {
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  Eigen::Matrix3f second = Eigen::Matrix3f::Zero();
+  Local out;
+  const Eigen::Vector3f centre = voxels[i].mean;
+  grid.for_each_within(centre, radius_m, [&](std::uint32_t j, float) {
+    const Eigen::Vector3f d = voxels[j].mean - centre;
+    sum += d;
+    second += d * d.transpose() + voxels[j].covariance;
+    ++out.neighbours;
+  });
+  const float n = static_cast<float>(out.neighbours);
+  const Eigen::Matrix3f covariance = second / n - (sum / n) * (sum / n).transpose();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+  solver.computeDirect(covariance);
+  const Eigen::Vector3f values = solver.eigenvalues().cwiseMax(0.0f);
+  if (out.neighbours < 3 || !(values.sum() > 0)) return out;
+  out.normal = solver.eigenvectors().col(0).normalized();
+  out.variation = values[0] / values.sum();
+  out.good = out.neighbours >= kMinNeighbours && values[1] > kLineRatio * values[2];
+  return out;
+}
+
+}  // namespace
+
+SurfaceEstimate estimate_surface(std::span<const VoxelMoments> voxels, float voxel_m) {
+  std::vector<Eigen::Vector3f> means(voxels.size());
+  for (std::size_t i = 0; i < voxels.size(); ++i) means[i] = voxels[i].mean;
+  const PointGrid grid(means, 2.2f * voxel_m);
+  SurfaceEstimate out;
+  out.normals.resize(voxels.size());
+  out.variation.assign(voxels.size(), 1.0f);
+  out.neighbours.assign(voxels.size(), 0);
+  parallel_for_index(voxels.size(), 256, [&](std::size_t i) {
+    Local local;
+    for (const float radius : kRadiiVoxels) {
+      const std::uint32_t first_count = out.neighbours[i];
+      local = fit(voxels, grid, i, radius * voxel_m);
+      out.neighbours[i] = first_count ? first_count : local.neighbours;
+      if (local.good) break;
+    }
+    out.normals[i] = local.normal.allFinite() ? local.normal : Eigen::Vector3f::UnitZ();
+    out.variation[i] = local.good ? local.variation : 1.0f;
+  });
+  return out;
+}
+
+void orient_to_station(std::span<const Eigen::Vector3f> points, const Eigen::Vector3f& station,
+                       std::span<Eigen::Vector3f> normals) {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (normals[i].dot(station - points[i]) < 0) normals[i] = -normals[i];
+}
+
+void orient_outwards(std::span<const Eigen::Vector3f> points, float voxel_m, std::span<Eigen::Vector3f> normals) {
+  const PointGrid grid(points, 2.0f * voxel_m);
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+  for (const auto& p : points) centroid += p.cast<double>();
+  centroid /= static_cast<double>(std::max<std::size_t>(points.size(), 1));
+  std::vector<char> visited(points.size(), 0);
+  using Edge = std::tuple<float, std::uint32_t, std::uint32_t>;  // cost, to, from: ties by index
+  std::priority_queue<Edge, std::vector<Edge>, std::greater<>> queue;
+  for (std::uint32_t seed = 0; seed < points.size(); ++seed) {
+    if (visited[seed]) continue;
+    std::vector<std::uint32_t> part;
+    queue.emplace(0.0f, seed, seed);
+    while (!queue.empty()) {
+      const auto [cost, to, from] = queue.top();
+      queue.pop();
+      if (visited[to]) continue;
+      visited[to] = 1;
+      part.push_back(to);
+      if (normals[to].dot(normals[from]) < 0) normals[to] = -normals[to];
+      grid.for_each_within(points[to], 2.0f * voxel_m, [&, at = to](std::uint32_t j, float) {
+        if (!visited[j]) queue.emplace(1.0f - std::abs(normals[at].dot(normals[j])), j, at);
+      });
+    }
+    double outwards = 0;
+    for (const auto i : part)
+      outwards += normals[i].cast<double>().dot((points[i].cast<double>() - centroid).normalized());
+    if (outwards < 0)
+      for (const auto i : part) normals[i] = -normals[i];
+  }
+}
+
+}  // namespace isthmus

@@ -1,0 +1,279 @@
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <numeric>
+
+#include "geometry/point_grid.h"
+#include "scan/free_space.h"
+#include "scan/sampling.h"
+#include "scan/station.h"
+#include "scan/surface.h"
+
+namespace isthmus {
+namespace {
+
+constexpr std::uint32_t kCubeSize = 90;           // 1 degree cells in the middle of a face
+constexpr std::uint32_t kMinVoxelNeighbours = 4;  // fewer voxels around (itself included): a stray point
+constexpr double kLogRangeStep = 2e-4;            // relative width of a bin of the range histogram
+constexpr double kSmallestRange = 1e-5;
+constexpr std::size_t kRangeBins = 140000;        // up to 1e-5 * exp(28) m: beyond any range
+// A station is believed when hardly a sight line is blocked and the points lie round it rather than in one direction.
+constexpr double kMaxBlocked = 0.10;
+constexpr double kMaxConcentration = 0.85;
+
+struct Voxel {
+  std::uint64_t key = 0;
+  std::uint32_t count = 0;
+  float min_range_m = std::numeric_limits<float>::infinity();
+  float max_range_m = 0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();      // of offsets from the voxel's centre
+  Eigen::Matrix<double, 6, 1> squares = Eigen::Matrix<double, 6, 1>::Zero();  // xx xy xz yy yz zz of the same offsets
+};
+
+std::size_t range_bin(double range) {
+  const double bin = std::log(range / kSmallestRange) / kLogRangeStep;
+  return static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(kRangeBins - 1)));
+}
+
+// A shell is a spike at the far end of the ranges: at least 0.3 % of all points within 0.1 %, hardly a point beyond, and far
+// denser than the ranges just before it (a tunnel's or a dome's wall is not).
+std::optional<double> find_no_return_range(const std::vector<std::uint32_t>& histogram, std::uint64_t total) {
+  constexpr std::size_t kHalf = 2, kContext = 100;
+  std::uint64_t beyond = 0;
+  for (std::size_t bin = kRangeBins; bin-- > kContext + kHalf;) {
+    if (histogram[bin] == 0) continue;
+    if (beyond > total / 1000) return std::nullopt;
+    std::uint64_t spike = 0, before = 0;
+    for (std::size_t b = bin - 2 * kHalf; b <= bin; ++b) spike += histogram[b];
+    for (std::size_t b = bin - kContext; b < bin - 2 * kHalf; ++b) before += histogram[b];
+    const double density_ratio = static_cast<double>(spike) / (2 * kHalf + 1) /
+                                 std::max(static_cast<double>(before) / (kContext - 2 * kHalf), 1e-9);
+    if (static_cast<double>(spike) > 0.003 * static_cast<double>(total) && density_ratio > 20)
+      return kSmallestRange * std::exp((static_cast<double>(bin) - kHalf + 0.5) * kLogRangeStep);
+    beyond += histogram[bin];
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+struct VoxelSampler::State {
+  SamplingOptions options;
+  double voxel_m;
+  Eigen::Vector3d local_origin_in_scan;
+  std::optional<Eigen::Vector3f> candidate_station;  // local frame
+  bool station_from_file = false;
+  std::vector<Voxel> voxels;
+  std::vector<std::uint32_t> slots;  // open addressing into voxels: index + 1
+  std::size_t last = std::numeric_limits<std::size_t>::max();  // voxel of the previous point: neighbours in a file are close
+  std::uint64_t num_read = 0, num_dropped = 0;
+  FreeSpace raw;
+  std::vector<std::uint32_t> ranges;
+  bool finished = false;
+
+  Voxel& voxel(std::uint64_t key);
+  void grow();
+};
+
+namespace {
+
+std::uint64_t mixed(std::uint64_t key) {
+  key ^= key >> 33;
+  key *= 0xff51afd7ed558ccdULL;
+  return key ^ (key >> 33);
+}
+
+constexpr std::int64_t kKeyOffset = 1 << 20;
+
+std::uint64_t voxel_key(const Eigen::Matrix<std::int64_t, 3, 1>& c) {
+  return static_cast<std::uint64_t>(c[0] + kKeyOffset) << 42 | static_cast<std::uint64_t>(c[1] + kKeyOffset) << 21 |
+         static_cast<std::uint64_t>(c[2] + kKeyOffset);
+}
+
+Eigen::Vector3d voxel_centre(std::uint64_t key, double voxel_m) {
+  const auto part = [&](int shift) {
+    return (static_cast<double>(static_cast<std::int64_t>(key >> shift & 0x1fffff) - kKeyOffset) + 0.5) * voxel_m;
+  };
+  return {part(42), part(21), part(0)};
+}
+
+}  // namespace
+
+Voxel& VoxelSampler::State::voxel(std::uint64_t key) {
+  if (last < voxels.size() && voxels[last].key == key) return voxels[last];
+  if (voxels.size() * 2 >= slots.size()) grow();
+  const std::uint64_t mask = slots.size() - 1;
+  std::uint64_t slot = mixed(key) & mask;
+  for (; slots[slot] != 0; slot = (slot + 1) & mask)
+    if (voxels[slots[slot] - 1].key == key) {
+      last = slots[slot] - 1;
+      return voxels[last];
+    }
+  voxels.emplace_back().key = key;
+  slots[slot] = static_cast<std::uint32_t>(voxels.size());
+  last = voxels.size() - 1;
+  return voxels[last];
+}
+
+void VoxelSampler::State::grow() {
+  slots.assign(std::max<std::size_t>(1 << 12, slots.size() * 2), 0);
+  const std::uint64_t mask = slots.size() - 1;
+  for (std::size_t i = 0; i < voxels.size(); ++i) {
+    std::uint64_t slot = mixed(voxels[i].key) & mask;
+    while (slots[slot] != 0) slot = (slot + 1) & mask;
+    slots[slot] = static_cast<std::uint32_t>(i + 1);
+  }
+}
+
+VoxelSampler::VoxelSampler(const ScanHeader& header, double voxel_m, const SamplingOptions& options)
+    : state_(std::make_unique<State>()) {
+  state_->options = options;
+  state_->voxel_m = voxel_m;
+  state_->local_origin_in_scan = header.local_origin_in_scan;
+  state_->station_from_file = header.station_in_scan.has_value();
+  const Eigen::Vector3d station =
+      header.station_in_scan.value_or(Eigen::Vector3d::Zero()) - header.local_origin_in_scan;
+  if (options.station != "unknown" && (state_->station_from_file || header.local_origin_in_scan.isZero()))
+    state_->candidate_station = station.cast<float>();
+  state_->raw.size = kCubeSize;
+  state_->raw.nearest_m.assign(6 * kCubeSize * kCubeSize, std::numeric_limits<float>::infinity());
+  state_->ranges.assign(kRangeBins, 0);
+  state_->grow();
+}
+
+VoxelSampler::~VoxelSampler() = default;
+
+std::size_t VoxelSampler::bytes() const {
+  return state_->voxels.capacity() * sizeof(Voxel) + state_->slots.capacity() * 4 + kRangeBins * 4 +
+         state_->raw.nearest_m.size() * 4;
+}
+
+void VoxelSampler::add(const PointChunk& chunk) {
+  State& s = *state_;
+  const double inverse = 1.0 / s.voxel_m;
+  const double limit = (static_cast<double>(kKeyOffset) - 1) * s.voxel_m;
+  const Eigen::Vector3f zero_in_local = (-s.local_origin_in_scan).cast<float>();
+  const Eigen::Vector3f station = s.candidate_station.value_or(Eigen::Vector3f::Zero());
+  for (const Eigen::Vector3f& p : chunk.points) {
+    ++s.num_read;
+    if (!p.allFinite() || p == zero_in_local || p.cast<double>().cwiseAbs().maxCoeff() >= limit) {
+      ++s.num_dropped;
+      continue;
+    }
+    const Eigen::Vector3d q = p.cast<double>();
+    const Eigen::Matrix<std::int64_t, 3, 1> cell = (q * inverse).array().floor().cast<std::int64_t>();
+    const std::uint64_t key = voxel_key(cell);
+    Voxel& v = s.voxel(key);
+    const Eigen::Vector3d d = q - (cell.cast<double>().array() + 0.5).matrix() * s.voxel_m;
+    v.sum += d;
+    v.squares += (Eigen::Matrix<double, 6, 1>() << d[0] * d[0], d[0] * d[1], d[0] * d[2], d[1] * d[1], d[1] * d[2],
+                  d[2] * d[2]).finished();
+    if (v.count < std::numeric_limits<std::uint32_t>::max()) ++v.count;
+    if (s.candidate_station) {
+      const Eigen::Vector3f ray = p - station;
+      const float range = ray.norm();
+      v.min_range_m = std::min(v.min_range_m, range);
+      v.max_range_m = std::max(v.max_range_m, range);
+      if (range > 0) {
+        float& nearest = s.raw.nearest_m[cube_cell(ray, kCubeSize)];
+        nearest = std::min(nearest, range);
+        ++s.ranges[range_bin(range)];
+      }
+    }
+  }
+}
+
+namespace {
+
+VoxelMoments moments_of(const Voxel& v, double voxel_m) {
+  const double n = v.count;
+  const Eigen::Vector3d mean = v.sum / n;
+  VoxelMoments out;
+  out.mean = (voxel_centre(v.key, voxel_m) + mean).cast<float>();
+  Eigen::Matrix3d second;
+  second << v.squares[0], v.squares[1], v.squares[2], v.squares[1], v.squares[3], v.squares[4], v.squares[2],
+      v.squares[4], v.squares[5];
+  out.covariance = (second / n - mean * mean.transpose()).cast<float>();
+  return out;
+}
+
+// The scan without stray voxels, in the order of the voxel keys.
+void fill(SampledScan& out, std::vector<Voxel>& voxels, double voxel_m) {
+  std::sort(voxels.begin(), voxels.end(), [](const Voxel& a, const Voxel& b) { return a.key < b.key; });
+  std::vector<VoxelMoments> moments(voxels.size());
+  for (std::size_t i = 0; i < voxels.size(); ++i) moments[i] = moments_of(voxels[i], voxel_m);
+  SurfaceEstimate surface = estimate_surface(moments, static_cast<float>(voxel_m));
+  for (std::size_t i = 0; i < voxels.size(); ++i) {
+    if (surface.neighbours[i] < kMinVoxelNeighbours && surface.variation[i] >= 1.0f) {
+      out.num_dropped += voxels[i].count;
+      continue;
+    }
+    out.points.push_back(moments[i].mean);
+    out.normals.push_back(surface.normals[i]);
+    out.variation.push_back(surface.variation[i]);
+    out.counts.push_back(voxels[i].count);
+  }
+}
+
+double typical_spacing(const SampledScan& scan) {
+  if (scan.counts.empty()) return 0;
+  std::vector<std::uint32_t> counts = scan.counts;
+  std::nth_element(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2), counts.end());
+  return scan.voxel_m / std::sqrt(static_cast<double>(counts[counts.size() / 2]));
+}
+
+}  // namespace
+
+Result<SampledScan> VoxelSampler::finish() {
+  State& s = *state_;
+  if (s.finished) return fail("finish() was called twice");
+  s.finished = true;
+  SampledScan out;
+  out.voxel_m = s.voxel_m;
+  out.local_origin_in_scan = s.local_origin_in_scan;
+  out.num_read = s.num_read;
+  out.num_dropped = s.num_dropped;
+  if (s.candidate_station && s.options.drop_no_return) {
+    out.no_return_range_m = find_no_return_range(s.ranges, s.num_read);
+    if (out.no_return_range_m) {
+      const auto low = static_cast<float>(*out.no_return_range_m * (1 - 6 * kLogRangeStep));
+      std::erase_if(s.voxels, [&](const Voxel& v) {
+        if (v.min_range_m < low) return false;
+        out.num_dropped += v.count;
+        return true;
+      });
+      for (float& nearest : s.raw.nearest_m)
+        if (nearest >= low) nearest = std::numeric_limits<float>::infinity();
+      out.notes.push_back(fmt::format("dropped a shell of no-return points at {:.4g} m", *out.no_return_range_m));
+    }
+  }
+  fill(out, s.voxels, s.voxel_m);
+  constexpr std::size_t kMinVoxels = 10;
+  if (out.points.size() < kMinVoxels)
+    return fail(fmt::format("only {} voxels of {:.4g} m hold a surface, {} of {} points are usable", out.points.size(),
+                            s.voxel_m, s.num_read - out.num_dropped, s.num_read),
+                "", "check the file's content and unit, or set sampling.voxel_m");
+  out.spacing_m = typical_spacing(out);
+  StationCheck check;
+  if (s.candidate_station) check = check_station(out.points, out.normals, static_cast<float>(s.voxel_m), *s.candidate_station);
+  const bool believed = s.candidate_station && (s.options.station == "origin" ||
+                                                (check.blocked < kMaxBlocked && check.concentration < kMaxConcentration));
+  if (believed) {
+    out.station_kind = StationKind::origin;
+    out.station = *s.candidate_station;
+    orient_to_station(out.points, out.station, out.normals);
+    out.free_space = dilated_free_space(s.raw);
+  } else {
+    orient_outwards(out.points, static_cast<float>(s.voxel_m), out.normals);
+    out.notes.push_back(s.candidate_station
+                            ? fmt::format("the origin is not the station ({:.0f} % of the sight lines blocked, "
+                                          "concentration {:.2f}): free space is not used",
+                                          100 * check.blocked, check.concentration)
+                            : std::string("station unknown: free space is not used"));
+  }
+  return out;
+}
+
+}  // namespace isthmus

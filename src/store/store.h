@@ -1,0 +1,75 @@
+// Content-addressed artifacts on disk: what a stage made of its inputs, found again by what went into it.
+//
+// FOLDER/<stage>/<first 2 digits>/<32 hex digits>.artifact, each file
+//   magic    8 bytes  "isthmusA"
+//   format   u32      of this envelope
+//   key      u64 length + text: the key it was stored under, so that a renamed file is noticed
+//   payload  u64 length + bytes (archive.h)
+//   checksum 16 bytes XXH3 (128 bits) of everything before
+// Files appear by rename, so any number of programs may share a folder; two that make the same artifact write the same
+// bytes, and the later one wins.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "base/error.h"
+#include "store/archive.h"
+
+namespace isthmus::store {
+
+/// What an artifact was made by and from.
+struct Key {
+  std::string stage;   ///< a word: "sampled", "features", "pair"
+  std::string digest;  ///< 32 hex digits over code version, settings and inputs; see make_key()
+};
+
+/// The key of what `stage` in its `version` makes of inputs (digests of files, settings or other keys, in order).
+Key make_key(std::string_view stage, std::string_view version, std::span<const std::string> inputs);
+
+class Store {
+ public:
+  /// Told about each damaged artifact that was found (and will be made anew). Called from any thread.
+  using OnDamage = std::function<void(const Error&)>;
+
+  /// Creates the folder if need be; fails when it cannot be written.
+  static Result<Store> open(const std::filesystem::path& folder, OnDamage on_damage);
+
+  /// The artifact, or nothing when there is none or it is damaged (which is reported once through OnDamage).
+  template <class T>
+  std::optional<T> load(const Key& key) const {
+    const std::optional<std::string> payload = load_payload(key);
+    if (!payload) return std::nullopt;
+    std::optional<T> value(std::in_place);
+    ArchiveReader reader(*payload);
+    reader(*value);
+    if (reader.complete()) return value;
+    report_damage(key, "its content does not have the expected form");
+    return std::nullopt;
+  }
+
+  template <class T>
+  Result<void> save(const Key& key, const T& value) const {
+    return save_payload(key, to_bytes(value));
+  }
+
+  [[nodiscard]] std::filesystem::path path_of(const Key& key) const;
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  Store(std::filesystem::path folder, OnDamage on_damage)
+      : folder_(std::move(folder)), on_damage_(std::move(on_damage)) {}
+  [[nodiscard]] std::optional<std::string> load_payload(const Key& key) const;
+  [[nodiscard]] Result<void> save_payload(const Key& key, const std::string& payload) const;
+  void report_damage(const Key& key, const std::string& reason) const;
+
+  std::filesystem::path folder_;
+  OnDamage on_damage_;
+};
+
+}  // namespace isthmus::store

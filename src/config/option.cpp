@@ -36,6 +36,15 @@ struct IsOptional : std::false_type {};
 template <class T>
 struct IsOptional<std::optional<T>> : std::true_type {};
 
+bool is_number(const Slot& slot) {
+  return std::visit(
+      []<class T>(const T*) {
+        return std::is_same_v<T, int> || std::is_same_v<T, double> || std::is_same_v<T, std::optional<int>> ||
+               std::is_same_v<T, std::optional<double>>;
+      },
+      slot);
+}
+
 /// Words that YAML would read as something else, and texts with special letters, go into double quotes.
 std::string yaml_text(const std::string& word) {
   static const std::string kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./%+";
@@ -153,7 +162,7 @@ std::string Option::kind() const {
 
 std::string Option::allowed() const {
   if (!choices.empty()) return fmt::format("one of {}", fmt::join(choices, ", "));
-  if (!std::isfinite(min) && !std::isfinite(max)) return "";
+  if (!is_number(slot) || (!std::isfinite(min) && !std::isfinite(max))) return "";
   const std::string suffix = unit.empty() ? "" : " " + unit;
   if (!std::isfinite(max)) return fmt::format("at least {}{}", min, suffix);
   if (!std::isfinite(min)) return fmt::format("at most {}{}", max, suffix);

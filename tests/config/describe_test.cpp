@@ -53,6 +53,7 @@ TEST(MarkdownTables, have_a_row_for_each_option) {
   const std::vector<Stage> stages{bind(toy_table(), options)};
   const std::string text = markdown_tables(stages);
   EXPECT_NE(text.find("| `method` | `fast` | one of fast, slow | Which way. |  |\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("| `loops` | `true` | true or false | Whether"), std::string::npos) << text;
   EXPECT_NE(text.find("How often \\| how long."), std::string::npos);
 }
 

@@ -1,0 +1,32 @@
+#include "pipelines/pair_stage.h"
+
+#include "pipelines/code_versions.h"
+
+namespace isthmus::pipelines {
+namespace {
+
+PairResult failed(const Error& error) {
+  PairResult result;
+  result.reason = error.text();
+  return result;
+}
+
+}  // namespace
+
+StoredPair register_planned_pair(const ScanPlan& source, const ScanPlan& target, const Settings& settings,
+                                 const std::string& settings_digest, const std::vector<Transform>& priors,
+                                 const store::Store& store, ProductCache& cache) {
+  const std::vector<std::string> inputs = {source.regions.digest, target.regions.digest, settings_digest,
+                                           store::to_bytes(priors)};
+  const store::Key key = store::make_key("pair", kPairVersion, inputs);
+  if (std::optional<PairResult> found = store.load<PairResult>(key)) return {std::move(*found), true};
+  const auto source_product = cache.get(source.id);
+  if (!source_product) return {failed(source_product.error()), false};
+  const auto target_product = cache.get(target.id);
+  if (!target_product) return {failed(target_product.error()), false};
+  PairResult result = register_pair(**source_product, **target_product, settings.pair, priors);
+  if (const Result<void> saved = store.save(key, result); !saved) return {failed(saved.error()), false};
+  return {std::move(result), false};
+}
+
+}  // namespace isthmus::pipelines

@@ -1,0 +1,112 @@
+#include "pipelines/planning.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "base/parallel.h"
+#include "pipelines/code_versions.h"
+#include "store/content_digest.h"
+
+namespace isthmus::pipelines {
+namespace {
+
+constexpr std::size_t kProbePoints = 200000;  // 2.4 MB a thread; enough for a voxel good to a few per cent
+constexpr double kFixedBytes = 16e6;          // chunk, descriptors and regions, whatever the number of voxels
+constexpr double kBytesPerVoxel =
+    600;  // accumulator, sampled point, normals' and descriptors' neighbourhoods (measured)
+constexpr double kLeastBytesPerPoint = 6;  // three 16-bit coordinates: no format stores a point in less
+
+/// ScanScale as the store keeps it: voxel, spacing, extent.
+using StoredScale = std::array<double, 3>;
+
+struct Look {
+  std::string content;
+  std::optional<ScanScale> scale;
+  std::optional<Error> error;
+};
+
+Result<ScanScale> measure_scale(const io::ScanRef& ref, int target_points) {
+  const Result<std::unique_ptr<io::ScanReader>> reader = io::open_scan(ref);
+  if (!reader) return tl::unexpected(reader.error());
+  const Result<PointChunk> probe = io::probe_scan(ref, kProbePoints);
+  if (!probe) return tl::unexpected(probe.error());
+  Result<ScanScale> scale = scale_of_probe(*probe, (*reader)->header().num_points, target_points);
+  if (!scale && scale.error().where.empty()) scale.error().where = ref.name;
+  return scale;
+}
+
+Look look_at(const io::ScanRef& ref, const Settings& settings, const store::Store& store) {
+  Look look;
+  Result<std::string> content = store::content_digest(ref.path, store);
+  if (!content) {
+    look.error = content.error();
+    return look;
+  }
+  look.content = *content;
+  const std::array<std::string, 3> inputs = {*content, std::to_string(ref.index),
+                                             std::to_string(settings.sampling.target_points)};
+  const store::Key key = store::make_key("scale", kSampledVersion, inputs);
+  if (const auto known = store.load<StoredScale>(key)) {
+    look.scale = ScanScale{(*known)[0], (*known)[1], (*known)[2]};
+    return look;
+  }
+  const Result<ScanScale> scale = measure_scale(ref, settings.sampling.target_points);
+  if (!scale) {
+    look.error = scale.error();
+    return look;
+  }
+  look.scale = *scale;
+  // Not being able to keep it only costs time later; a full disk shows itself when products are written.
+  (void)store.save(key, StoredScale{scale->voxel_m, scale->spacing_m, scale->extent_m});
+  return look;
+}
+
+/// Memory that making a scan's products takes: surfaces have a number of voxels that falls with the square of their
+/// size.
+std::size_t bytes_to_make(const io::ScanRef& ref, const ScanScale& scale, double voxel_m, int target_points) {
+  const double ratio = scale.voxel_m / voxel_m;
+  double voxels = target_points * ratio * ratio;
+  std::error_code error;
+  const auto file_bytes = static_cast<double>(std::filesystem::file_size(ref.path, error));
+  if (!error) voxels = std::min(voxels, file_bytes / kLeastBytesPerPoint);
+  return static_cast<std::size_t>(kFixedBytes + kBytesPerVoxel * voxels);
+}
+
+}  // namespace
+
+SurveyPlan plan_survey(const std::vector<io::ScanRef>& scans, const Settings& settings, const store::Store& store,
+                       const Events& events, const std::atomic<bool>& stop) {
+  std::vector<Look> looks(scans.size());
+  std::atomic<std::size_t> done{0};
+  parallel_for_index(scans.size(), 1, [&](std::size_t i) {
+    if (!stop) looks[i] = look_at(scans[i], settings, store);
+    events.advance("look", done.fetch_add(1) + 1, scans.size());
+  });
+  SurveyPlan plan;
+  if (stop) return plan;
+  std::vector<ScanScale> scales;
+  for (const Look& look : looks) {
+    if (look.scale) scales.push_back(*look.scale);
+  }
+  plan.automatic_voxel = !settings.sampling.voxel_m;
+  if (settings.sampling.voxel_m) {
+    plan.voxel_m = *settings.sampling.voxel_m;
+  } else if (!scales.empty()) {
+    plan.voxel_m = automatic_voxel_m(scales);
+  }
+  const SettingsDigests digests = digests_of(settings);
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const int id = static_cast<int>(i);
+    if (looks[i].error) {
+      plan.failed.push_back({id, *looks[i].error});
+      continue;
+    }
+    plan.scans.push_back(make_plan(id, scans[i], looks[i].content, plan.voxel_m, digests));
+    plan.scans.back().bytes = bytes_to_make(scans[i], *looks[i].scale, plan.voxel_m, settings.sampling.target_points);
+  }
+  return plan;
+}
+
+}  // namespace isthmus::pipelines

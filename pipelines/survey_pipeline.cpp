@@ -1,0 +1,377 @@
+#include "pipelines/survey_pipeline.h"
+
+#include <fmt/format.h>
+#include <oneapi/tbb/flow_graph.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <memory>
+
+#include "pipelines/byte_gate.h"
+#include "pipelines/guided_pairs.h"
+#include "pipelines/pair_stage.h"
+
+namespace isthmus::pipelines {
+namespace {
+
+namespace flow = oneapi::tbb::flow;
+
+constexpr std::size_t kBytesOfPair =
+    96U << 20;                               // lookups, range images and hypotheses of one pair (measured: 40-90 MB)
+constexpr std::size_t kCopiesOfProduct = 2;  // the product itself and its bytes while it is loaded
+
+/// Runs a node's body: what it throws (out of memory, a bug in a library) becomes an error, and waiting loops inside it
+/// take no work of other nodes, so that no node begins before the gate let it.
+template <class Body>
+std::optional<Error> contained(const Body& body) {
+  std::optional<Error> error;
+  oneapi::tbb::this_task_arena::isolate([&] {
+    try {
+      body();
+    } catch (const std::exception& exception) {
+      error = Error{fmt::format("internal failure: {}", exception.what()), "", "please report it with the scan"};
+    } catch (...) {
+      error = Error{"internal failure of unknown kind", "", "please report it with the scan"};
+    }
+  });
+  return error;
+}
+
+struct ScanWork {
+  ScanPlan plan;
+  ScanOutcome* outcome = nullptr;
+  std::unique_ptr<ScanProduct>
+      product;  ///< empty when the summary was in the store, the scan failed or a stop was asked for
+
+  [[nodiscard]] bool active() const { return product != nullptr && !outcome->error; }
+};
+using ScanMessage = std::shared_ptr<ScanWork>;
+
+struct PairWork {
+  PairOutcome* outcome = nullptr;
+  std::vector<Transform> priors;
+  std::size_t bytes = 0;
+};
+using PairMessage = std::shared_ptr<PairWork>;
+
+class SurveyGraph {
+ public:
+  SurveyGraph(const SurveyPlan& plan, const Settings& settings, const store::Store& store, const Events& events,
+              const std::atomic<bool>& stop, SurveyOutcome& out)
+      : plan_(plan),
+        settings_(settings),
+        store_(store),
+        events_(events),
+        stop_(stop),
+        out_(out),
+        maker_(settings, store),
+        digests_(digests_of(settings)),
+        gate_(memory_bytes_of(settings.run), 2 * static_cast<std::size_t>(threads_of(settings.run))),
+        cache_(out.scans.size(), 2 * static_cast<std::size_t>(threads_of(settings.run)),
+               [this](int id) { return load_product(id); }) {
+    for (const ScanPlan& scan : plan_.scans) plan_of_[scan.id] = &scan;
+    connect();
+  }
+
+  void run() {
+    for (const ScanPlan& scan : plan_.scans) {
+      auto work = std::make_shared<ScanWork>();
+      work->plan = scan;
+      work->outcome = &out_.scans[static_cast<std::size_t>(scan.id)];
+      gate_.submit(scan.bytes, [this, work] { read_.try_put(work); });
+    }
+    graph_.wait_for_all();
+    out_.peak_bytes_in_flight = gate_.peak_bytes();
+  }
+
+ private:
+  using ScanNode = flow::function_node<ScanMessage, ScanMessage>;
+  using PairNode = flow::function_node<PairMessage, PairMessage>;
+  using Barrier = flow::multifunction_node<ScanMessage, std::tuple<flow::continue_msg>>;
+  using PairBarrier = flow::multifunction_node<PairMessage, std::tuple<flow::continue_msg>>;
+  using Step = flow::function_node<flow::continue_msg>;
+
+  void connect() {
+    flow::make_edge(read_, describe_);
+    flow::make_edge(describe_, divide_);
+    flow::make_edge(divide_, all_scans_);
+    flow::make_edge(flow::output_port<0>(all_scans_), candidates_);
+    flow::make_edge(pair_, all_pairs_);
+    flow::make_edge(flow::output_port<0>(all_pairs_), solve_);
+  }
+
+  template <class Body>
+  ScanMessage step(const ScanMessage& work, const Body& body) {
+    if (const auto error = contained(body)) work->outcome->error = error;
+    return work;
+  }
+
+  void read_and_reduce(ScanWork& work) {
+    if (stop_) return;
+    work.outcome->summary = store_.load<ScanSummary>(work.plan.summary);
+    if (work.outcome->summary) {
+      work.outcome->times.push_back({work.plan.summary.stage, 0, true});
+      return;
+    }
+    Result<SampledScan> sampled = maker_.sampled(work.plan, work.outcome->times);
+    if (!sampled) {
+      work.outcome->error = sampled.error();
+      return;
+    }
+    work.product = std::make_unique<ScanProduct>();
+    work.product->sampled = std::move(*sampled);
+  }
+
+  void describe(ScanWork& work) {
+    if (!work.active()) return;
+    Result<FeatureCloud> features = maker_.features(work.plan, work.product->sampled, work.outcome->times);
+    if (features) {
+      work.product->features = std::move(*features);
+    } else {
+      work.outcome->error = features.error();
+    }
+  }
+
+  void divide(ScanWork& work) {
+    if (!work.active()) return;
+    Result<RegionMap> regions =
+        maker_.regions(work.plan, work.product->sampled, work.product->features, work.outcome->times);
+    if (!regions) {
+      work.outcome->error = regions.error();
+      return;
+    }
+    work.product->regions = std::move(*regions);
+    work.outcome->summary = summarise(*work.product);
+    if (const Result<void> saved = store_.save(work.plan.summary, *work.outcome->summary); !saved) {
+      work.outcome->error = saved.error();
+    }
+  }
+
+  /// Serial: the end of a scan's walk and the barrier behind it.
+  void arrive(const ScanMessage& work, Barrier::output_ports_type& ports) {
+    work->product.reset();
+    if (work->outcome->error) {
+      if (work->outcome->error->where.empty()) work->outcome->error->where = work->plan.ref.name;
+      events_.warn(work->outcome->error->text());
+    }
+    ++scans_done_;
+    events_.advance("scans", scans_done_, plan_.scans.size());
+    if (scans_done_ == plan_.scans.size()) std::get<0>(ports).try_put({});
+    gate_.release(work->plan.bytes);
+  }
+
+  void choose_candidates() {
+    if (stop_) return;
+    if (const auto error = contained([&] { propose(); })) out_.warnings.push_back(error->text());
+    if (out_.pairs.empty()) solve_.try_put({});
+    num_pairs_ = out_.pairs.size();
+    for (PairOutcome& pair : out_.pairs) submit(pair, {});
+  }
+
+  void propose() {
+    std::vector<CandidateInput> inputs;
+    for (const ScanOutcome& scan : out_.scans) {
+      if (!scan.summary || scan.error) continue;
+      const ScanSummary& summary = *scan.summary;
+      const std::size_t count = summary.dimension == 0 ? 0 : summary.descriptors.size() / summary.dimension;
+      inputs.push_back({scan.id, scan.ref.name, summary.descriptors, count, std::nullopt});
+    }
+    const CandidateGraph graph = propose_candidates(inputs, settings_.candidates);
+    for (const std::string& warning : graph.warnings) warn(warning);
+    for (const Candidate& candidate : graph.candidates) {
+      out_.pairs.push_back({});
+      PairOutcome& pair = out_.pairs.back();
+      pair.source = candidate.source;
+      pair.target = candidate.target;
+      pair.score = candidate.score;
+      pair.why = candidate.why;
+    }
+    for (ScanOutcome& scan : out_.scans) {
+      if (scan.summary) std::vector<float>().swap(scan.summary->descriptors);  // needed no more
+    }
+  }
+
+  void submit(PairOutcome& pair, std::vector<Transform> priors) {
+    auto work = std::make_shared<PairWork>();
+    work->outcome = &pair;
+    work->priors = std::move(priors);
+    const auto bytes_of = [&](int id) { return out_.scans[static_cast<std::size_t>(id)].summary->product_bytes; };
+    work->bytes = kBytesOfPair + kCopiesOfProduct * (bytes_of(pair.source) + bytes_of(pair.target));
+    gate_.submit(work->bytes, [this, work] { pair_.try_put(work); });
+  }
+
+  void register_one(PairWork& work) {
+    if (stop_) return;
+    const auto start = std::chrono::steady_clock::now();
+    PairOutcome& pair = *work.outcome;
+    const auto error = contained([&] {
+      StoredPair stored = register_planned_pair(*plan_of_.at(pair.source), *plan_of_.at(pair.target), settings_,
+                                                digests_.pair, work.priors, store_, cache_);
+      pair.from_store = stored.from_store;
+      keep(pair, std::move(stored.result), !work.priors.empty());
+    });
+    if (error && work.priors.empty()) pair.result.reason = error->text();
+    pair.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+
+  /// A guided result counts only where it says more than the first one did.
+  static void keep(PairOutcome& pair, PairResult result, bool guided) {
+    if (guided && result.verdict <= pair.result.verdict) return;
+    pair.result = std::move(result);
+    pair.guided = guided;
+  }
+
+  void arrive(const PairMessage& work, PairBarrier::output_ports_type& ports) {
+    ++pairs_done_;
+    events_.advance("pairs", pairs_done_, num_pairs_);
+    if (pairs_done_ == num_pairs_) std::get<0>(ports).try_put({});
+    gate_.release(work->bytes);
+  }
+
+  void solve_graph() {
+    if (stop_) return;
+    if (const auto error = contained([&] { out_.solution = solve(graph_of_results(), settings_.solve); })) {
+      warn(error->text());
+    }
+    if (guided_round_ || out_.pairs.empty()) return;
+    guided_round_ = true;
+    std::vector<GuidedPair> guided;
+    if (const auto error = contained([&] { guided = guided_pairs(); })) warn(error->text());
+    num_pairs_ += guided.size();
+    for (const GuidedPair& pair : guided) submit(outcome_of(pair), {pair.target_from_source});
+  }
+
+  std::vector<GuidedPair> guided_pairs() {
+    std::vector<OutlinedScan> scans;
+    for (const ScanOutcome& scan : out_.scans) {
+      if (scan.summary && !scan.error) scans.push_back({scan.id, &*scan.summary});
+    }
+    std::vector<GuidedPair> pairs = propose_guided_pairs(out_.solution, scans, settings_.candidates.pairs_per_scan);
+    out_.pairs.reserve(out_.pairs.size() + pairs.size());  // work in flight points into the vector
+    return pairs;
+  }
+
+  PairOutcome& outcome_of(const GuidedPair& guided) {
+    for (PairOutcome& pair : out_.pairs) {
+      if (std::minmax(pair.source, pair.target) == std::minmax(guided.source, guided.target)) return pair;
+    }
+    PairOutcome pair;
+    pair.source = guided.source;
+    pair.target = guided.target;
+    pair.score = guided.predicted_overlap;
+    pair.why = "predicted";
+    out_.pairs.push_back(pair);
+    return out_.pairs.back();
+  }
+
+  PoseGraph graph_of_results() {
+    PoseGraph graph;
+    graph.voxel_m = plan_.voxel_m;
+    for (const ScanOutcome& scan : out_.scans) {
+      if (!scan.summary || scan.error) continue;
+      graph.scans.push_back({scan.id, scan.ref.name, scan.summary->centre, scan.summary->radius_m});
+    }
+    for (const PairOutcome& pair : out_.pairs)
+      graph.links.push_back({pair.source, pair.target, pair.result, pair.guided});
+    return graph;
+  }
+
+  /// For pairs whose products are not in memory: from the store, or anew if they are damaged.
+  Result<ScanProduct> load_product(int id) {
+    std::vector<StageTime> times;
+    Result<ScanProduct> product = maker_.product(*plan_of_.at(id), times);
+    const auto made = std::ranges::count(times, false, &StageTime::from_store);
+    num_made_again_ += static_cast<std::size_t>(made);
+    return product;
+  }
+
+  void warn(const std::string& text) {
+    out_.warnings.push_back(text);
+    events_.warn(text);
+  }
+
+ public:
+  [[nodiscard]] std::size_t num_made_again() const { return num_made_again_; }
+
+ private:
+  const SurveyPlan& plan_;
+  const Settings& settings_;
+  const store::Store& store_;
+  const Events& events_;
+  const std::atomic<bool>& stop_;
+  SurveyOutcome& out_;
+  ProductMaker maker_;
+  SettingsDigests digests_;
+  ByteGate gate_;
+  ProductCache cache_;
+  std::map<int, const ScanPlan*> plan_of_;
+  std::size_t scans_done_ = 0;  // written by the serial barrier only
+  std::size_t pairs_done_ = 0;  // likewise
+  std::size_t num_pairs_ = 0;   // written before pairs are submitted
+  bool guided_round_ = false;
+  std::atomic<std::size_t> num_made_again_{0};
+
+  flow::graph graph_;
+  ScanNode read_{graph_, flow::unlimited,
+                 [this](const ScanMessage& w) { return step(w, [&] { read_and_reduce(*w); }); }};
+  ScanNode describe_{graph_, flow::unlimited, [this](const ScanMessage& w) { return step(w, [&] { describe(*w); }); }};
+  ScanNode divide_{graph_, flow::unlimited, [this](const ScanMessage& w) { return step(w, [&] { divide(*w); }); }};
+  Barrier all_scans_{graph_, flow::serial,
+                     [this](const ScanMessage& w, Barrier::output_ports_type& p) { arrive(w, p); }};
+  Step candidates_{graph_, flow::serial, [this](flow::continue_msg m) {
+                     choose_candidates();
+                     return m;
+                   }};
+  PairNode pair_{graph_, flow::unlimited, [this](const PairMessage& w) {
+                   register_one(*w);
+                   return w;
+                 }};
+  PairBarrier all_pairs_{graph_, flow::serial,
+                         [this](const PairMessage& w, PairBarrier::output_ports_type& p) { arrive(w, p); }};
+  Step solve_{graph_, flow::serial, [this](flow::continue_msg m) {
+                solve_graph();
+                return m;
+              }};
+};
+
+void count_products(SurveyOutcome& out, std::size_t made_again) {
+  out.num_made = made_again;
+  for (const ScanOutcome& scan : out.scans) {
+    for (const StageTime& time : scan.times) ++(time.from_store ? out.num_found : out.num_made);
+  }
+  for (const PairOutcome& pair : out.pairs) ++(pair.from_store ? out.num_found : out.num_made);
+}
+
+}  // namespace
+
+SurveyOutcome run_survey(const std::vector<io::ScanRef>& scans, const Settings& settings, const store::Store& store,
+                         const Events& events, const std::atomic<bool>& stop) {
+  SurveyOutcome out;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    out.scans.push_back({static_cast<int>(i), scans[i], std::nullopt, std::nullopt, {}});
+  }
+  const auto threads = static_cast<std::size_t>(threads_of(settings.run));
+  const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);
+  oneapi::tbb::task_arena arena(static_cast<int>(threads));
+  arena.execute([&] {
+    const SurveyPlan plan = plan_survey(scans, settings, store, events, stop);
+    out.voxel_m = plan.voxel_m;
+    out.automatic_voxel = plan.automatic_voxel;
+    for (const FailedScan& failed : plan.failed) {
+      out.scans[static_cast<std::size_t>(failed.id)].error = failed.error;
+      events.warn(failed.error.text());
+    }
+    if (plan.scans.empty() || stop) return;
+    SurveyGraph graph(plan, settings, store, events, stop, out);
+    graph.run();
+    count_products(out, graph.num_made_again());
+  });
+  out.stopped = stop;
+  std::ranges::sort(out.pairs, {}, [](const PairOutcome& p) { return std::pair(p.source, p.target); });
+  return out;
+}
+
+}  // namespace isthmus::pipelines

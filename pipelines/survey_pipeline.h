@@ -1,0 +1,60 @@
+// The whole survey as one flow graph:
+//
+//   read, reduce -> describe -> divide -> | candidates | -> pairs -> | graph | (-> guided pairs -> graph)
+//
+// Each scan goes on as soon as it is there; | | waits for all. Memory in flight is bounded by bytes (byte_gate.h); a
+// failed scan or pair is data. Results are sorted by id before they leave: the same for any number of threads and order
+// of files. Of a pair, the scan whose name sorts later is the source.
+#pragma once
+
+#include <atomic>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipelines/events.h"
+#include "pipelines/planning.h"
+#include "pipelines/settings.h"
+#include "survey/pose_graph.h"
+
+namespace isthmus::pipelines {
+
+/// What became of one scan.
+struct ScanOutcome {
+  int id = 0;
+  io::ScanRef ref;
+  std::optional<ScanSummary> summary;  ///< absent if it failed
+  std::optional<Error> error;
+  std::vector<StageTime> times;
+};
+
+struct PairOutcome {
+  int source = 0;
+  int target = 0;
+  double score = 0;     ///< likeness from the choice of candidates
+  std::string why;      ///< why it was tried
+  bool guided = false;  ///< the result is of the second round, with the predicted pose as an extra hypothesis
+  bool from_store = false;
+  double seconds = 0;  ///< of this run
+  PairResult result;   ///< between local frames, before solving
+};
+
+struct SurveyOutcome {
+  double voxel_m = 0;
+  bool automatic_voxel = false;
+  bool stopped = false;               ///< asked to stop: what was finished is in the store, the rest is missing here
+  std::vector<ScanOutcome> scans;     ///< ascending ids
+  std::vector<PairOutcome> pairs;     ///< ascending (source, target)
+  Solution solution;                  ///< of the scans that did not fail
+  std::vector<std::string> warnings;  ///< in a fixed order
+  std::size_t num_made = 0;           ///< products computed in this run
+  std::size_t num_found = 0;          ///< products found in the store
+  std::size_t peak_bytes_in_flight = 0;
+};
+
+/// Runs in an arena of its own with settings.run.threads threads. `scans` sorted by name: the index is the id. `stop`
+/// may be set at any time (signals): work in flight is finished and stored, nothing else is begun.
+SurveyOutcome run_survey(const std::vector<io::ScanRef>& scans, const Settings& settings, const store::Store& store,
+                         const Events& events, const std::atomic<bool>& stop);
+
+}  // namespace isthmus::pipelines

@@ -1,0 +1,197 @@
+#include "survey/candidates.h"
+
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/parallel.h"
+#include "survey/spanning_forest.h"
+#include "survey/visual_words.h"
+
+namespace isthmus {
+namespace {
+
+using Pair = std::pair<int, int>;  // positions among the scans sorted by name, smaller first
+
+/// The scans in name order, and what every choice needs to know of their pairs.
+struct Survey {
+  std::vector<const CandidateInput*> scans;
+  std::vector<double> scores;  // n x n, symmetric
+  CandidateOptions options;
+
+  [[nodiscard]] int size() const { return static_cast<int>(scans.size()); }
+  [[nodiscard]] double score(int a, int b) const { return scores[static_cast<std::size_t>(a) * scans.size() + b]; }
+  [[nodiscard]] std::optional<double> distance_m(int a, int b) const {
+    if (!scans[a]->prior_position || !scans[b]->prior_position) return std::nullopt;
+    return (*scans[a]->prior_position - *scans[b]->prior_position).norm();
+  }
+  [[nodiscard]] bool allowed(int a, int b) const {
+    const std::optional<double> d = distance_m(a, b);
+    return !(d && options.max_distance_m && *d > *options.max_distance_m);
+  }
+};
+
+/// Median over the scans of the distance to the k-th nearest one, among those with a prior position.
+double neighbour_distance_m(const Survey& survey) {
+  std::vector<double> kth;
+  for (int a = 0; a < survey.size(); ++a) {
+    std::vector<double> distances;
+    for (int b = 0; b < survey.size(); ++b)
+      if (const auto d = a == b ? std::nullopt : survey.distance_m(a, b)) distances.push_back(*d);
+    if (distances.empty()) continue;
+    std::sort(distances.begin(), distances.end());
+    kth.push_back(distances[std::min<std::size_t>(distances.size(), static_cast<std::size_t>(survey.options.pairs_per_scan)) - 1]);
+  }
+  if (kth.empty()) return 0;
+  std::nth_element(kth.begin(), kth.begin() + static_cast<std::ptrdiff_t>(kth.size() / 2), kth.end());
+  return kth[kth.size() / 2];
+}
+
+void compute_scores(Survey& survey) {
+  std::vector<survey::DescriptorView> views;
+  for (const CandidateInput* scan : survey.scans) views.push_back({scan->descriptors, scan->num_keypoints});
+  const std::vector<survey::WordBag> bags = survey::weighted_bags(views);
+  const double typical_m = neighbour_distance_m(survey);
+  const std::size_t n = survey.scans.size();
+  survey.scores.assign(n * n, 0.0);
+  parallel_for_index(n, 1, [&](std::size_t a) {
+    for (std::size_t b = 0; b < n; ++b) {
+      if (a == b) continue;
+      // The smaller index first, so that both halves hold the same bits.
+      double score = survey::likeness(bags[std::min(a, b)], bags[std::max(a, b)]);
+      const std::optional<double> d = survey.distance_m(static_cast<int>(a), static_cast<int>(b));
+      if (d && typical_m > 0) score = (score + 1.0) / (2.0 * (1.0 + *d * *d / (typical_m * typical_m)));
+      survey.scores[a * n + b] = score;
+    }
+  });
+}
+
+void add(std::map<Pair, const char*>& chosen, int a, int b, const char* why) {
+  if (a != b) chosen.try_emplace({std::min(a, b), std::max(a, b)}, why);
+}
+
+void add_groups(const Survey& survey, std::map<Pair, const char*>& chosen, std::vector<std::string>& warnings) {
+  for (const std::string& group : survey.options.groups) {
+    std::set<int> members;
+    std::istringstream words(group);
+    for (std::string pattern; words >> pattern;) {
+      bool matched = false;
+      for (int i = 0; i < survey.size(); ++i)
+        if (survey.scans[i]->name == pattern || ::fnmatch(pattern.c_str(), survey.scans[i]->name.c_str(), 0) == 0)
+          members.insert(i), matched = true;
+      if (!matched) warnings.push_back(fmt::format("candidates.groups: '{}' matches no scan that was read", pattern));
+    }
+    for (const int a : members)
+      for (const int b : members)
+        if (a < b) add(chosen, a, b, "group");
+  }
+}
+
+void add_file_order(const Survey& survey, std::map<Pair, const char*>& chosen) {
+  std::vector<int> order(survey.scans.size());
+  for (int i = 0; i < survey.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return natural_less(survey.scans[a]->name, survey.scans[b]->name); });
+  for (int i = 0; i < survey.size(); ++i)
+    for (int k = 1; k <= survey.options.file_order_neighbours && i + k < survey.size(); ++k)
+      if (survey.allowed(order[i], order[i + k])) add(chosen, order[i], order[i + k], "file order");
+}
+
+void add_most_alike(const Survey& survey, std::map<Pair, const char*>& chosen) {
+  for (int a = 0; a < survey.size(); ++a) {
+    std::vector<int> others;
+    for (int b = 0; b < survey.size(); ++b)
+      if (b != a && survey.allowed(a, b)) others.push_back(b);
+    std::stable_sort(others.begin(), others.end(), [&](int x, int y) { return survey.score(a, x) > survey.score(a, y); });
+    others.resize(std::min<std::size_t>(others.size(), static_cast<std::size_t>(survey.options.pairs_per_scan)));
+    for (const int b : others) add(chosen, a, b, "likeness");
+  }
+}
+
+/// Joins the parts of the graph by the most similar pairs between them. The union of each scan's best leaves room for it: every
+/// part holds at least one pair that two scans chose mutually, so parts - 1 more pairs stay within scans x pairs_per_scan.
+void connect(const Survey& survey, std::map<Pair, const char*>& chosen, std::vector<std::string>& warnings) {
+  survey::DisjointSets sets(survey.size());
+  for (const auto& [pair, why] : chosen) sets.join(pair.first, pair.second);
+  std::vector<Pair> rest;
+  for (int a = 0; a < survey.size(); ++a)
+    for (int b = a + 1; b < survey.size(); ++b)
+      if (sets.find(a) != sets.find(b) && survey.allowed(a, b)) rest.emplace_back(a, b);
+  std::stable_sort(rest.begin(), rest.end(), [&](const Pair& x, const Pair& y) {
+    return survey.score(x.first, x.second) > survey.score(y.first, y.second);
+  });
+  for (const auto& [a, b] : rest)
+    if (sets.join(a, b)) add(chosen, a, b, "connects");
+  std::set<int> parts;
+  for (int i = 0; i < survey.size(); ++i) parts.insert(sets.find(i));
+  if (parts.size() > 1)
+    warnings.push_back(fmt::format("the candidate pairs leave {} unconnected parts: candidates.max_distance_m forbids the rest",
+                                   parts.size()));
+}
+
+std::vector<Candidate> ranked(const Survey& survey, const std::map<Pair, const char*>& chosen) {
+  std::vector<Candidate> out;
+  for (const auto& [pair, why] : chosen)
+    out.push_back({survey.scans[pair.second]->id, survey.scans[pair.first]->id, survey.score(pair.first, pair.second), why});
+  std::stable_sort(out.begin(), out.end(), [](const Candidate& x, const Candidate& y) { return x.score > y.score; });
+  return out;
+}
+
+}  // namespace
+
+bool natural_less(std::string_view a, std::string_view b) {
+  const auto is_digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (is_digit(a[i]) && is_digit(b[j])) {
+      const auto number = [&](std::string_view s, std::size_t& at) {
+        while (at < s.size() && s[at] == '0') ++at;
+        const std::size_t start = at;
+        while (at < s.size() && is_digit(s[at])) ++at;
+        return s.substr(start, at - start);
+      };
+      const std::string_view x = number(a, i), y = number(b, j);
+      if (x.size() != y.size()) return x.size() < y.size();
+      if (x != y) return x < y;
+    } else {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i, ++j;
+    }
+  }
+  if (i < a.size() || j < b.size()) return j < b.size();
+  return a < b;  // equal but for leading zeros
+}
+
+CandidateGraph propose_candidates(std::span<const CandidateInput> scans, const CandidateOptions& options) {
+  Survey survey;
+  survey.options = options;
+  for (const CandidateInput& scan : scans) survey.scans.push_back(&scan);
+  std::sort(survey.scans.begin(), survey.scans.end(),
+            [](const CandidateInput* a, const CandidateInput* b) { return a->name < b->name; });
+  compute_scores(survey);
+  CandidateGraph graph;
+  std::map<Pair, const char*> chosen;
+  add_groups(survey, chosen, graph.warnings);
+  if (!options.only_groups) {
+    add_file_order(survey, chosen);
+    if (survey.size() <= options.all_pairs_up_to) {
+      for (int a = 0; a < survey.size(); ++a)
+        for (int b = a + 1; b < survey.size(); ++b)
+          if (survey.allowed(a, b)) add(chosen, a, b, "all pairs");
+    } else {
+      add_most_alike(survey, chosen);
+    }
+    connect(survey, chosen, graph.warnings);
+  }
+  graph.candidates = ranked(survey, chosen);
+  return graph;
+}
+
+}  // namespace isthmus

@@ -1,0 +1,98 @@
+// Pair results -> the survey's poses: which links to believe, which scans hang together, where each scan stands.
+//
+// Frames. Poses are component_from_local: from a scan's local frame (io/scan_reader.h) to the frame of its component, which
+// is the local frame of the component's anchor. A link's measurement is target_from_source between local frames.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/option_table.h"
+#include "geometry/transform.h"
+#include "pairwise/pair_result.h"
+
+namespace isthmus {
+
+/// One scan of the survey. Errors of links and poses are measured at its centre.
+struct GraphScan {
+  int id = 0;                                           ///< unique, >= 0
+  std::string name;                                     ///< for reasons; the id is used where it is empty
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();     ///< centroid of its points, local frame
+  double radius_m = 0;                                  ///< typical distance of its points from the centre; 0 = unknown
+};
+
+/// One tried pair.
+struct Link {
+  int source = 0;
+  int target = 0;
+  PairResult result;
+  /// The hypothesis came from poses solved before (second round): that it agrees with them proves nothing, so it has no vote.
+  bool guided = false;
+};
+
+struct PoseGraph {
+  double voxel_m = 0;            ///< sampling of the scans; the unit of what counts as agreement; > 0
+  std::vector<GraphScan> scans;  ///< every scan that was read, in any order
+  std::vector<Link> links;       ///< every pair tried, in any order
+};
+
+struct SolveOptions {
+  double noise_voxels = 0.25;
+  double noise_deg = 0.1;
+  double agreement_chi2 = 22.46;
+  double undecided_wrong_probability = 0.3;
+  bool promote_ambiguous = true;
+  double chance_closure = 0.01;
+  double promote_probability = 0.95;
+};
+const config::OptionTable<SolveOptions>& solve_options_table();
+
+/// How far a measurement is from given poses, at the centre of the source scan.
+struct LinkError {
+  double rotation_rad = 0;
+  double translation_m = 0;
+  double chi2 = 0;  ///< squared error in units of the link's own uncertainty, 6 degrees of freedom
+};
+
+struct SolvedLink {
+  Link link;                         ///< verdict and reason as they are after solving
+  Verdict measured = Verdict::failed;///< the verdict the pair stage gave
+  std::optional<LinkError> before;   ///< against the spanning tree's poses; absent if the ends are not in one component
+  std::optional<LinkError> after;    ///< against the final poses; absent likewise
+  bool in_loop = false;              ///< accepted, and confirmed by at least one loop (false: a bridge, believed alone)
+};
+
+struct PlacedScan {
+  int id = 0;
+  int component = 0;
+  Transform component_from_local = Transform::Identity();
+  std::optional<double> sigma_m;    ///< standard deviation of the position of its centre relative to the anchor, worst axis
+  std::optional<double> sigma_rad;  ///< likewise of the rotation
+};
+
+/// Scans joined by accepted links. Components are numbered by size, largest first, then by smallest id.
+struct Component {
+  int anchor = 0;          ///< id of the scan with most accepted links, then the smallest id; its pose is the identity
+  std::vector<int> scans;  ///< ids, ascending
+};
+
+struct Solution {
+  std::vector<Component> components;  ///< every scan of the graph is in one, if only its own
+  std::vector<PlacedScan> scans;      ///< ascending ids; a scan alone in its component has the identity
+  std::vector<SolvedLink> links;      ///< ascending (source, target)
+  std::vector<std::string> warnings;
+
+  [[nodiscard]] const PlacedScan* find(int id) const;
+};
+
+/// target_from_source between local frames as the solved poses say, if both scans are in one component.
+std::optional<Transform> predicted_target_from_source(const Solution& solution, int source, int target);
+
+/// Rejects links that contradict the loops, promotes ambiguous links that the loops confirm, optimises the poses robustly and
+/// finds the components. Method and sources: docs/stages/pose_graph.md. Runs in one thread; the same bytes for any order of
+/// scans and links. Never fails: a link that cannot be used is returned with verdict failed and the reason.
+Solution solve(const PoseGraph& graph, const SolveOptions& options);
+
+}  // namespace isthmus

@@ -1,0 +1,162 @@
+#include "survey/candidates.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <set>
+
+#include "base/rng.h"
+#include "survey/spanning_forest.h"
+
+namespace isthmus {
+namespace {
+
+constexpr int kDimension = 33;
+constexpr int kKeypoints = 120;
+
+/// Scans along a street: each sees some places, every place has its own descriptors; neighbours share places. All of them share
+/// half their keypoints with everybody (walls), which must not count.
+struct Street {
+  std::vector<std::vector<float>> descriptors;
+  std::vector<CandidateInput> inputs;
+
+  explicit Street(int num_scans) {
+    descriptors.resize(static_cast<std::size_t>(num_scans));
+    for (int i = 0; i < num_scans; ++i) {
+      Rng noise(seed_of(1, fmt::format("{}", i)));
+      for (int k = 0; k < kKeypoints; ++k) {
+        const int place = k % 2 == 0 ? -1 : i * 30 + k / 2;  // the next scan shares half of the places
+        Rng rng(seed_of(2, fmt::format("{}/{}", place, place < 0 ? k : 0)));
+        std::vector<double> row(kDimension);
+        double norm = 0;
+        for (double& v : row) v = rng.uniform() * rng.uniform() + 0.002 * noise.uniform(), norm += v * v;
+        for (const double v : row) descriptors[i].push_back(static_cast<float>(v / std::sqrt(norm)));
+      }
+    }
+    for (int i = 0; i < num_scans; ++i) {
+      CandidateInput input;
+      input.id = i;
+      input.name = fmt::format("scan{}.ply", i);
+      input.descriptors = descriptors[i];
+      input.num_keypoints = kKeypoints;
+      inputs.push_back(input);
+    }
+  }
+};
+
+std::set<std::pair<int, int>> pairs_of(const CandidateGraph& graph) {
+  std::set<std::pair<int, int>> pairs;
+  for (const Candidate& c : graph.candidates) pairs.insert({std::min(c.source, c.target), std::max(c.source, c.target)});
+  return pairs;
+}
+
+bool connected(const CandidateGraph& graph, int n) {
+  survey::DisjointSets sets(n);
+  int joins = 0;
+  for (const Candidate& c : graph.candidates) joins += sets.join(c.source, c.target);
+  return joins == n - 1;
+}
+
+TEST(Candidates, SmallSurveysTryEveryPairOnce) {
+  const Street street(24);
+  const CandidateGraph graph = propose_candidates(street.inputs, {});
+  EXPECT_EQ(graph.candidates.size(), 276U);
+  EXPECT_EQ(pairs_of(graph).size(), 276U);
+  for (std::size_t i = 1; i < graph.candidates.size(); ++i)
+    EXPECT_GE(graph.candidates[i - 1].score, graph.candidates[i].score);
+}
+
+TEST(Candidates, NeighboursShareRareWordsAndComeFirst) {
+  const Street street(40);
+  const CandidateGraph graph = propose_candidates(street.inputs, {});
+  const auto pairs = pairs_of(graph);
+  EXPECT_LE(graph.candidates.size(), 200U);
+  EXPECT_TRUE(connected(graph, 40));
+  int found = 0;
+  for (int i = 0; i + 1 < 40; ++i) found += pairs.contains({i, i + 1});
+  EXPECT_EQ(found, 39);
+  for (int i = 0; i < 39; ++i) {
+    const Candidate& c = graph.candidates[i];
+    EXPECT_EQ(std::abs(c.source - c.target), 1) << c.source << ' ' << c.target << ' ' << c.score;
+  }
+}
+
+TEST(Candidates, OrderOfTheFilesDoesNotMatter) {
+  const Street street(40);
+  CandidateOptions options;
+  options.file_order_neighbours = 2;
+  const CandidateGraph first = propose_candidates(street.inputs, options);
+  std::vector<CandidateInput> shuffled = street.inputs;
+  Rng rng(4);
+  for (std::size_t i = shuffled.size(); i > 1; --i) std::swap(shuffled[i - 1], shuffled[rng.below(i)]);
+  const CandidateGraph second = propose_candidates(shuffled, options);
+  ASSERT_EQ(first.candidates.size(), second.candidates.size());
+  for (std::size_t i = 0; i < first.candidates.size(); ++i) {
+    EXPECT_EQ(first.candidates[i].source, second.candidates[i].source);
+    EXPECT_EQ(first.candidates[i].target, second.candidates[i].target);
+    EXPECT_EQ(first.candidates[i].score, second.candidates[i].score);
+  }
+}
+
+TEST(Candidates, StayWithinTheBudgetAndConnected) {
+  const Street street(30);
+  for (const int k : {1, 2, 3}) {
+    CandidateOptions options;
+    options.pairs_per_scan = k;
+    const CandidateGraph graph = propose_candidates(street.inputs, options);
+    EXPECT_LE(graph.candidates.size(), 30U * k);
+    EXPECT_TRUE(connected(graph, 30)) << k;
+  }
+}
+
+TEST(Candidates, ScansWithoutDescriptorsAreStillConnected) {
+  std::vector<CandidateInput> inputs(30);
+  for (int i = 0; i < 30; ++i) inputs[i].id = i, inputs[i].name = fmt::format("s{}", i);
+  const CandidateGraph graph = propose_candidates(inputs, {});
+  EXPECT_TRUE(connected(graph, 30));
+}
+
+TEST(Candidates, NoneForZeroAndOneScan) {
+  EXPECT_TRUE(propose_candidates({}, {}).candidates.empty());
+  const Street one(1);
+  EXPECT_TRUE(propose_candidates(one.inputs, {}).candidates.empty());
+}
+
+TEST(Candidates, GroupsAreTriedWhateverTheBudget) {
+  const Street street(40);
+  CandidateOptions options;
+  options.groups = {"scan0.ply scan39.ply", "scan3?.ply", "nowhere*.ply"};
+  options.only_groups = true;
+  const CandidateGraph graph = propose_candidates(street.inputs, options);
+  EXPECT_EQ(graph.candidates.size(), 1U + 45U);
+  EXPECT_TRUE(pairs_of(graph).contains({0, 39}));
+  ASSERT_EQ(graph.warnings.size(), 1U);
+  EXPECT_NE(graph.warnings[0].find("nowhere*.ply"), std::string::npos);
+}
+
+TEST(Candidates, FileOrderIsNaturalOrder) {
+  EXPECT_TRUE(natural_less("s2", "s10"));
+  EXPECT_FALSE(natural_less("s10", "s2"));
+  EXPECT_TRUE(natural_less("a", "b"));
+  EXPECT_TRUE(natural_less("s2", "s02b"));
+  EXPECT_TRUE(natural_less("s02", "s2"));
+  EXPECT_FALSE(natural_less("s2", "s2"));
+  EXPECT_TRUE(natural_less("s2/a10", "s2/a11"));
+}
+
+TEST(Candidates, PriorPositionsRankNearPairsFirstAndLimitThem) {
+  Street street(30);
+  for (int i = 0; i < 30; ++i) street.inputs[i].prior_position = Eigen::Vector3d(10.0 * i, 0, 0);
+  CandidateOptions options;
+  options.max_distance_m = 25.0;
+  const CandidateGraph graph = propose_candidates(street.inputs, options);
+  for (const Candidate& c : graph.candidates) EXPECT_LE(std::abs(c.source - c.target), 2);
+  EXPECT_TRUE(connected(graph, 30));
+  street.inputs[29].prior_position = Eigen::Vector3d(9000, 0, 0);
+  EXPECT_EQ(propose_candidates(street.inputs, options).warnings.size(), 1U);
+}
+
+}  // namespace
+}  // namespace isthmus

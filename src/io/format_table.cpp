@@ -1,0 +1,60 @@
+#include "io/format_table.h"
+
+#include <algorithm>
+#include <array>
+
+#include "io/pcd/pcd_reader.h"
+#include "io/ply/ply_reader.h"
+#include "io/text_number.h"
+#include "io/wording.h"
+
+namespace isthmus::io {
+namespace {
+
+constexpr std::array<Format, 2> kFormats = {{
+    {"ply", "ply", "Stanford polygon file: ascii, binary little and big endian", open_ply},
+    {"pcd", "pcd", "PCL point cloud data: ascii, binary, binary_compressed", open_pcd},
+}};
+
+constexpr std::string_view kUnsupported =
+    "e57 laz fls fws zfs zfc rxp rdbx rdb ptg ptb ptz rcs rcp lgs lgsx pod clr cl3 x3a imp";
+
+std::string extension_of(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  return lower_case(extension.empty() ? extension : extension.substr(1));
+}
+
+bool lists(std::string_view extensions, std::string_view extension) {
+  const auto words = words_of(extensions);
+  return std::find(words.begin(), words.end(), extension) != words.end();
+}
+
+std::string readable_extensions() {
+  std::string all;
+  for (const Format& format : kFormats) {
+    for (const auto word : words_of(format.extensions)) all += (all.empty() ? "." : " .") + std::string(word);
+  }
+  return all;
+}
+
+}  // namespace
+
+std::span<const Format> formats() { return kFormats; }
+
+Result<const Format*> format_of(const std::filesystem::path& path) {
+  const std::string extension = extension_of(path);
+  for (const Format& format : kFormats) {
+    if (lists(format.extensions, extension)) return &format;
+  }
+  return fail("unsupported format " + in_quotes("." + extension), path.string(), "readable: " + readable_extensions());
+}
+
+bool is_known_but_unsupported(const std::filesystem::path& path) { return lists(kUnsupported, extension_of(path)); }
+
+OpenedScan open_probing(const ScanRef& scan) {
+  auto format = format_of(scan.path);
+  if (!format) return tl::unexpected(std::move(format.error()));
+  return (*format)->open(scan);
+}
+
+}  // namespace isthmus::io

@@ -1,0 +1,61 @@
+#include "io/output_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+namespace isthmus::io {
+
+OutputFile::OutputFile(int descriptor, std::filesystem::path path, std::string temporary)
+    : descriptor_(descriptor), path_(std::move(path)), temporary_(std::move(temporary)) {}
+
+OutputFile::OutputFile(OutputFile&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)),
+      path_(std::move(other.path_)),
+      temporary_(std::move(other.temporary_)) {}
+
+OutputFile::~OutputFile() {
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  ::unlink(temporary_.c_str());
+}
+
+tl::unexpected<Error> OutputFile::system_failure(std::string_view verb) const {
+  return fail("cannot be " + std::string(verb) + ": " + std::strerror(errno), path_.string());
+}
+
+Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
+  std::string temporary = path.string() + ".XXXXXX";
+  const int descriptor = ::mkstemp(temporary.data());
+  OutputFile file(descriptor, path, temporary);
+  if (descriptor < 0) return file.system_failure("created");
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  if (::fchmod(descriptor, 0666 & ~mask) != 0) return file.system_failure("created");
+  return file;
+}
+
+Result<void> OutputFile::write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t done = ::write(descriptor_, bytes.data(), bytes.size());
+    if (done < 0 && errno == EINTR) continue;
+    if (done < 0) return system_failure("written");
+    bytes.remove_prefix(static_cast<std::size_t>(done));
+  }
+  return {};
+}
+
+Result<void> OutputFile::publish() {
+  if (::fsync(descriptor_) != 0) return system_failure("written");
+  if (::rename(temporary_.c_str(), path_.c_str()) != 0) return system_failure("renamed");
+  ::close(std::exchange(descriptor_, -1));
+  return {};
+}
+
+}  // namespace isthmus::io

@@ -14,6 +14,7 @@ struct Kind {
 
 constexpr std::array kKinds = {
     Kind{"office", 9.0, build_office},
+    Kind{"street", 30.0, build_street},
 };
 
 const Kind& kind_of(std::string_view name) {

@@ -3,17 +3,29 @@
 #include <algorithm>
 #include <array>
 
+#include "io/kitti/kitti_reader.h"
+#include "io/las/las_reader.h"
+#include "io/obj/obj_reader.h"
 #include "io/pcd/pcd_reader.h"
 #include "io/ply/ply_reader.h"
+#include "io/ptx/ptx_reader.h"
+#include "io/text/table_reader.h"
 #include "io/text_number.h"
 #include "io/wording.h"
 
 namespace isthmus::io {
 namespace {
 
-constexpr std::array<Format, 2> kFormats = {{
+constexpr std::array<Format, 9> kFormats = {{
+    {"ptx", "ptx", "Leica PTX: gridded scans with their poses, several in a file", open_ptx, scans_of_ptx},
     {"ply", "ply", "Stanford polygon file: ascii, binary little and big endian", open_ply},
     {"pcd", "pcd", "PCL point cloud data: ascii, binary, binary_compressed", open_pcd},
+    {"las", "las", "ASPRS LAS 1.0 to 1.4, point formats 0 to 10, not compressed", open_las},
+    {"pts", "pts", "Leica PTS: a count, then x y z intensity r g b", open_pts},
+    {"xyz", "xyz txt csv asc xyzi xyzn xyzrgb", "text table: delimiter and columns are detected", open_xyz},
+    {"3dtk", "3d", "3DTK scan: centimetres, left-handed; read as metres, x forward, y left, z up", open_3dtk},
+    {"kitti", "bin", "KITTI Velodyne: float32 x y z reflectance", open_kitti},
+    {"obj", "obj", "Wavefront OBJ: its vertices", open_obj},
 }};
 
 constexpr std::string_view kUnsupported =

@@ -20,11 +20,18 @@
 
 namespace isthmus::io {
 
+/// Where a scan lies in a file that holds several; end_byte 0 = unknown, it is looked for when the scan is opened.
+struct FilePlace {
+  std::uint64_t first_byte = 0, end_byte = 0;
+  std::uint64_t first_line = 1;
+};
+
 /// One scan of one file.
 struct ScanRef {
   std::filesystem::path path;
   int index = 0;     ///< which scan of the file, from 0
   std::string name;  ///< path relative to the input folder with extension, "#k" when the file holds several, percent-encoded
+  FilePlace place = {};  ///< filled in by scans_of_file for formats that need it; never needed from a caller
 };
 
 using isthmus::PointChunk;

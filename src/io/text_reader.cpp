@@ -197,6 +197,11 @@ Result<void> TextReader::choose_from_sample() {
   std::vector<Eigen::Vector3d> positions;
   for (const TextPoint& point : *sample) positions.push_back(point.p_in_scan);
   header_.local_origin_in_scan = local_origin_of(positions);
+  if (block_.origin_is_station && header_.local_origin_in_scan.isZero(0.0)) {
+    header_.station_in_scan = Eigen::Vector3d::Zero();
+  } else if (block_.origin_is_station) {
+    header_.notes.push_back("the points lie over 10 km from the origin, which cannot be the station: no station taken");
+  }
   rewind();
   return {};
 }

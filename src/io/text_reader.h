@@ -25,6 +25,7 @@ struct TextBlock {
   bool only_points = true;                 ///< false: lines of another kind follow the points before end_byte
   std::optional<std::uint64_t> num_lines;  ///< claimed lines with points (no-returns too); fewer are an error
   bool drop_no_returns = false;            ///< points at exactly 0 0 0 are counted and left out
+  bool origin_is_station = false;          ///< the format says so; believed unless the points lie over 10 km from there
 };
 
 /// Looks at a few points to choose the local origin and returns a reader; fails if there is no point at all.

@@ -1,0 +1,147 @@
+#include "report/html_tables.h"
+
+#include <algorithm>
+#include <iterator>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "report/html_text.h"
+
+namespace isthmus::report {
+namespace {
+
+constexpr std::size_t kNameLength = 28;
+
+std::string name_cell(const SurveyRecord& record, int id) {
+  const ScanRecord* scan = find_scan(record, id);
+  const std::string name = scan != nullptr ? scan->name : "?";
+  return fmt::format("<td data-v=\"{}\" title=\"{}\">{}</td>", id, escaped(name), escaped(short_name(name, kNameLength)));
+}
+
+/// A right-aligned number that sorts by `value`.
+std::string number_cell(double value, const std::string& text) {
+  return fmt::format("<td class=\"n\" data-v=\"{:.9g}\">{}</td>", value, escaped(text));
+}
+
+std::string empty_cell() { return "<td class=\"n\" data-v=\"\">–</td>"; }
+
+const char* loop_text(const SolvedLink& l) {
+  if (l.link.result.verdict != Verdict::accepted) return "";
+  return l.in_loop ? "confirmed" : l.link.guided ? "guided" : "none";
+}
+
+std::string link_row(const SurveyRecord& record, const SolvedLink& l) {
+  const PairResult& r = l.link.result;
+  std::string row = fmt::format("<tr class=\"{}\" id=\"link-{}-{}\">", word(r.verdict), l.link.source, l.link.target);
+  row += name_cell(record, l.link.source) + name_cell(record, l.link.target);
+  row += fmt::format("<td data-v=\"{}\"><b class=\"pill {}\">{}</b></td>", 3 - static_cast<int>(r.verdict), word(r.verdict),
+                     word(r.verdict));
+  row += number_cell(r.probability, fmt::format("{:.3f}", r.probability));
+  row += r.target_from_source ? number_cell(r.overlap, percent(r.overlap)) + number_cell(r.rms_m, metres(r.rms_m))
+                              : empty_cell() + empty_cell();
+  row += l.after ? number_cell(l.after->translation_m, metres(l.after->translation_m)) +
+                       number_cell(l.after->rotation_rad, degrees(l.after->rotation_rad))
+                 : empty_cell() + empty_cell();
+  row += fmt::format("<td>{}</td><td class=\"why\">{}</td></tr>\n", loop_text(l), escaped(r.reason));
+  return row;
+}
+
+std::string header(std::initializer_list<std::pair<const char*, const char*>> columns) {
+  std::string out = "<thead><tr>";
+  for (const auto& [name, help] : columns) out += fmt::format("<th title=\"{}\" tabindex=\"0\">{}</th>", help, name);
+  return out + "</tr></thead>";
+}
+
+std::string advice(const SurveyRecord& record, const SolvedLink* best) {
+  if (best == nullptr) return "No pair with the rest was tried. Name one under <code>candidates.groups</code>.";
+  const PairResult& r = best->link.result;
+  const std::string source = find_scan(record, best->link.source)->name, target = find_scan(record, best->link.target)->name;
+  std::string text = fmt::format("Nearest to joining it: <b>{}</b> with <b>{}</b>, {}, probability {:.2f}", escaped(source),
+                                 escaped(target), word(r.verdict), r.probability);
+  if (r.target_from_source) text += fmt::format(", overlap {}", percent(r.overlap));
+  return text + fmt::format(". {}. Look at it with <code>isthmus pair</code>, or scan once more between the two.",
+                            escaped(r.reason));
+}
+
+}  // namespace
+
+std::string link_table(const SurveyRecord& record) {
+  std::vector<const SolvedLink*> links;
+  for (const SolvedLink& l : record.solution.links) links.push_back(&l);
+  std::stable_sort(links.begin(), links.end(), [](const SolvedLink* a, const SolvedLink* b) {
+    const auto rank = [](const SolvedLink* l) { return std::pair(l->link.result.verdict, l->link.result.probability); };
+    return rank(a) > rank(b);
+  });
+  std::string out = "<table class=\"sortable\" id=\"links\">";
+  out += header({{"source", "Later scan of the pair"},
+                 {"target", "Earlier scan of the pair"},
+                 {"verdict", "After the loops have spoken"},
+                 {"probability", "That the link is right, from the pair alone"},
+                 {"overlap", "Share of points with a facing point of the other scan; the smaller direction"},
+                 {"residual", "Point to plane over the overlap, root mean square"},
+                 {"off by", "Distance of this link from the solved poses at the source&#39;s centre"},
+                 {"turned by", "Rotation of this link against the solved poses"},
+                 {"loop", "Whether a loop of links confirms it"},
+                 {"reason", "Why the verdict is what it is"}});
+  out += "<tbody>";
+  for (const SolvedLink* l : links) out += link_row(record, *l);
+  return out + "</tbody></table>";
+}
+
+std::string scan_table(const SurveyRecord& record) {
+  std::string out = "<table class=\"sortable\" id=\"scans\">";
+  out += header({{"id", "Vertex id in pose_graph.g2o"},
+                 {"name", "File"},
+                 {"status", "Placed: in a part of two or more scans"},
+                 {"part", "Component; 0 is the largest"},
+                 {"links", "Accepted links"},
+                 {"position ±", "Standard deviation of the position relative to the anchor, worst direction"},
+                 {"points read", "In the file"},
+                 {"points used", "After voxel sampling"},
+                 {"spacing", "Median distance of raw points"},
+                 {"station", "How the station's place is known"},
+                 {"notes", ""}});
+  out += "<tbody>";
+  for (const ScanRecord& scan : record.scans) {
+    const PlacedScan* placed = record.solution.find(scan.id);
+    const auto links = std::count_if(record.solution.links.begin(), record.solution.links.end(), [&](const SolvedLink& l) {
+      return l.link.result.verdict == Verdict::accepted && (l.link.source == scan.id || l.link.target == scan.id);
+    });
+    std::string notes = scan.reason;
+    for (const std::string& note : scan.notes) notes += (notes.empty() ? "" : "; ") + note;
+    fmt::format_to(std::back_inserter(out), "<tr class=\"{}\" id=\"scan-{}\">", word(scan.status), scan.id);
+    out += number_cell(scan.id, std::to_string(scan.id));
+    out += fmt::format("<td title=\"{}\">{}</td>", escaped(scan.name), escaped(scan.name));
+    out += fmt::format("<td data-v=\"{}\"><b class=\"pill {}\">{}</b></td>", static_cast<int>(scan.status), word(scan.status),
+                       word(scan.status));
+    out += placed != nullptr ? number_cell(placed->component, std::to_string(placed->component)) : empty_cell();
+    out += number_cell(static_cast<double>(links), std::to_string(links));
+    out += placed != nullptr && placed->sigma_m ? number_cell(*placed->sigma_m, metres(*placed->sigma_m)) : empty_cell();
+    out += number_cell(static_cast<double>(scan.num_read), large_number(scan.num_read));
+    out += number_cell(static_cast<double>(scan.points), large_number(scan.points));
+    out += number_cell(scan.spacing_m, metres(scan.spacing_m));
+    out += fmt::format("<td>{}</td><td class=\"why\">{}</td></tr>\n", word(scan.station_kind), escaped(notes));
+  }
+  return out + "</tbody></table>";
+}
+
+std::string missing_section(const SurveyRecord& record) {
+  std::string items;
+  for (const ScanRecord& scan : record.scans)
+    if (scan.status == ScanStatus::failed)
+      items += fmt::format("<li class=\"failed\"><b class=\"pill failed\">unreadable</b> <b>{}</b><p>{}</p></li>",
+                           escaped(scan.name), escaped(scan.reason));
+  for (std::size_t c = 1; c < record.solution.components.size(); ++c) {
+    const Component& part = record.solution.components[c];
+    const SolvedLink* best = best_open_link(record, static_cast<int>(c));
+    std::string names;
+    for (const int id : part.scans) names += (names.empty() ? "" : ", ") + find_scan(record, id)->name;
+    items += fmt::format("<li><b class=\"pill unplaced\">{}</b> <b>{}</b><p>{}</p></li>",
+                         part.scans.size() == 1 ? "unplaced" : fmt::format("part {} of {} scans", c, part.scans.size()),
+                         escaped(names), advice(record, best));
+  }
+  return items.empty() ? items : "<ul class=\"missing\">" + items + "</ul>";
+}
+
+}  // namespace isthmus::report

@@ -1,0 +1,268 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "base/atomic_file.h"
+#include "report/csv.h"
+#include "report/html_report.h"
+#include "report/pose_files.h"
+#include "report/run_json.h"
+#include "report/sample_record.h"
+#include "report/tables.h"
+#include "report/write_outputs.h"
+
+namespace isthmus::report {
+namespace {
+
+using isthmus::testing::exp_of;
+using isthmus::testing::random_pose;
+using isthmus::testing::sample_record;
+
+/// A small reader as stupid as the standard allows.
+std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
+  std::vector<std::vector<std::string>> rows(1, std::vector<std::string>(1));
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted) {
+      if (c == '"' && i + 1 < text.size() && text[i + 1] == '"') rows.back().back() += '"', ++i;
+      else if (c == '"') quoted = false;
+      else rows.back().back() += c;
+    } else if (c == '"') quoted = true;
+    else if (c == ',') rows.back().emplace_back();
+    else if (c == '\n') rows.emplace_back(1);
+    else rows.back().back() += c;
+  }
+  rows.pop_back();
+  return rows;
+}
+
+Transform read_pose(std::istream& in) {
+  double x, y, z, qx, qy, qz, qw;
+  in >> x >> y >> z >> qx >> qy >> qz >> qw;
+  Transform t = Transform::Identity();
+  t.translation() = Eigen::Vector3d(x, y, z);
+  t.linear() = Eigen::Quaterniond(qw, qx, qy, qz).toRotationMatrix();
+  return t;
+}
+
+struct G2o {
+  struct Edge {
+    int from, to;
+    Transform measurement;
+    Matrix6d information;
+  };
+  std::map<int, Transform> vertices;
+  std::vector<Edge> edges;
+};
+
+G2o parse_g2o(const std::string& text) {
+  G2o g;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream in(line);
+    std::string tag;
+    in >> tag;
+    if (tag == "VERTEX_SE3:QUAT") {
+      int id = 0;
+      in >> id;
+      g.vertices[id] = read_pose(in);
+    } else {
+      EXPECT_EQ(tag, "EDGE_SE3:QUAT");
+      G2o::Edge e;
+      in >> e.from >> e.to;
+      e.measurement = read_pose(in);
+      for (int r = 0; r < 6; ++r)
+        for (int c = r; c < 6; ++c) in >> e.information(r, c), e.information(c, r) = e.information(r, c);
+      EXPECT_FALSE(in.fail());
+      g.edges.push_back(e);
+    }
+  }
+  return g;
+}
+
+/// g2o's EdgeSE3 error: translation and vector part of the unit quaternion (w >= 0) of measurement^-1 * from^-1 * to.
+Vector6d g2o_error(const Transform& measurement, const Transform& from, const Transform& to) {
+  const Transform delta = measurement.inverse() * from.inverse() * to;
+  Eigen::Quaterniond q(delta.linear());
+  if (q.w() < 0) q.coeffs() = -q.coeffs();
+  Vector6d e;
+  e << delta.translation(), q.vec();
+  return e;
+}
+
+TEST(Csv, QuotesWhatRfc4180AsksFor) {
+  EXPECT_EQ(csv_field("plain"), "plain");
+  EXPECT_EQ(csv_field("a,b"), "\"a,b\"");
+  EXPECT_EQ(csv_field("say \"hi\""), "\"say \"\"hi\"\"\"");
+  EXPECT_EQ(csv_field("two\nlines"), "\"two\nlines\"");
+  CsvTable csv;
+  csv.add("x,\"y\"").add(-0.0).add(1.0 / 0.0).add(3).end_row();
+  EXPECT_EQ(csv.text(), "\"x,\"\"y\"\"\",0,,3\n");
+}
+
+TEST(Outputs, ScansTableHasEveryScanAndTheFailedOneToo) {
+  const SurveyRecord record = sample_record(14);
+  const auto rows = parse_csv(scans_csv(record));
+  ASSERT_EQ(rows.size(), 16U);
+  EXPECT_EQ(std::vector<std::string>(rows[0].begin(), rows[0].begin() + 5),
+            (std::vector<std::string>{"id", "name", "status", "component", "points"}));
+  for (const auto& row : rows) EXPECT_EQ(row.size(), rows[0].size());
+  EXPECT_EQ(rows[1][2], "placed");
+  EXPECT_EQ(rows[1][3], "0");
+  EXPECT_EQ(rows[13][2], "unplaced");
+  EXPECT_NE(rows[13][5].find("slides along the facade"), std::string::npos);
+  EXPECT_EQ(rows[15][2], "failed");
+  EXPECT_EQ(rows[15][3], "");
+  EXPECT_NE(rows[15][5].find("\"4800000\" were promised"), std::string::npos);
+}
+
+TEST(Outputs, LinksTableHasEveryPairWithEvidenceButNoTimings) {
+  SurveyRecord record = sample_record(14);
+  const std::string before = links_csv(record);
+  const auto rows = parse_csv(before);
+  ASSERT_EQ(rows.size(), record.solution.links.size() + 1);
+  EXPECT_EQ(std::vector<std::string>(rows[0].begin(), rows[0].begin() + 7),
+            (std::vector<std::string>{"source", "target", "verdict", "reason", "probability", "overlap", "rms_m"}));
+  for (const auto& row : rows) EXPECT_EQ(row.size(), rows[0].size());
+  EXPECT_EQ(rows[0][rows[0].size() - 2], "support");
+  for (SolvedLink& l : record.solution.links) l.link.result.seconds_by_stage = {{"hypotheses", 9.0}};
+  EXPECT_EQ(links_csv(record), before);
+  EXPECT_NE(timings_csv(record).find("hypotheses,9"), std::string::npos);
+}
+
+TEST(Outputs, PosesAreInTheFilesOwnCoordinates) {
+  SurveyRecord record = sample_record(14);
+  Rng rng(3);
+  for (ScanRecord& scan : record.scans)
+    scan.local_origin_in_scan = Eigen::Vector3d(500000 + rng.uniform(0, 50), 5240000 + rng.uniform(0, 50), rng.uniform(0, 500));
+  std::istringstream lines(poses_text(record));
+  std::map<std::string, Transform> poses;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream in(line);
+    std::string name;
+    in >> name;
+    Transform t = Transform::Identity();
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 4; ++c) in >> t(r, c);
+    EXPECT_FALSE(in.fail());
+    poses[name] = t;
+  }
+  EXPECT_EQ(poses.size(), 12U);
+  const int anchor = record.solution.components[0].anchor;
+  EXPECT_TRUE(poses.at(find_scan(record, anchor)->name).isApprox(Transform::Identity(), 0));
+  // A point goes the same way through local frames as through the file's coordinates.
+  const ScanRecord& scan = record.scans[5];
+  const Eigen::Vector3d p_in_local(3, -2, 1);
+  const Eigen::Vector3d by_local = record.solution.find(5)->component_from_local * p_in_local + find_scan(record, anchor)->local_origin_in_scan;
+  const Eigen::Vector3d by_file = poses.at(scan.name) * (p_in_local + scan.local_origin_in_scan);
+  EXPECT_LT((by_local - by_file).norm(), 1e-6);
+}
+
+TEST(Outputs, G2oEdgesAgreeWithVerticesInScanFrames) {
+  SurveyRecord record = sample_record(14);
+  Rng rng(3);
+  for (ScanRecord& scan : record.scans) scan.local_origin_in_scan = Eigen::Vector3d(rng.uniform(0, 90), rng.uniform(0, 90), 7);
+  const G2o g = parse_g2o(pose_graph_g2o(record));
+  EXPECT_EQ(g.vertices.size(), 12U);
+  EXPECT_EQ(g.edges.size(), static_cast<std::size_t>(count(record).accepted));
+  for (const G2o::Edge& e : g.edges) {
+    ASSERT_TRUE(g.vertices.contains(e.from) && g.vertices.contains(e.to));
+    const Vector6d error = g2o_error(e.measurement, g.vertices.at(e.from), g.vertices.at(e.to));
+    EXPECT_LT(error.tail<3>().norm(), 0.01);
+    EXPECT_GT(Eigen::SelfAdjointEigenSolver<Matrix6d>(e.information).eigenvalues().minCoeff(), 0);
+  }
+}
+
+/// The information convention, proven: the cost that g2o computes from our file equals the cost that the pair stage meant,
+/// d' I d for target_from_source * exp(d) between local frames, for every small d, with every cross term.
+TEST(Outputs, G2oInformationMeansWhatThePairStageMeant) {
+  Rng rng(8);
+  for (int trial = 0; trial < 20; ++trial) {
+    SurveyRecord record = sample_record(4);
+    record.solution.links.resize(1);
+    Link& link = record.solution.links[0].link;
+    link.result.verdict = Verdict::accepted;
+    Matrix6d a;
+    for (double& value : a.reshaped()) value = rng.normal();
+    link.result.information = a.transpose() * a;
+    link.result.target_from_source = random_pose(rng, 20);
+    for (ScanRecord& scan : record.scans)
+      scan.local_origin_in_scan = Eigen::Vector3d(rng.uniform(-9, 9), rng.uniform(-9, 9), rng.uniform(-9, 9)), scan.status = ScanStatus::unplaced;
+    const G2o g = parse_g2o(pose_graph_g2o(record));
+    ASSERT_EQ(g.edges.size(), 1U);
+    EXPECT_EQ(g.edges[0].from, link.target);
+    EXPECT_EQ(g.edges[0].to, link.source);
+    const Eigen::Translation3d source_origin(find_scan(record, link.source)->local_origin_in_scan);
+    const Eigen::Translation3d target_origin(find_scan(record, link.target)->local_origin_in_scan);
+    // J: change of g2o's error by a right perturbation of the *local* measurement, by central differences.
+    constexpr double kStep = 1e-6;
+    Matrix6d jacobian;
+    for (int k = 0; k < 6; ++k) {
+      const auto error_at = [&](double step) {
+        Vector6d d = Vector6d::Zero();
+        d[k] = step;
+        const Transform moved = target_origin * Transform(*link.result.target_from_source * exp_of(d)) * source_origin.inverse();
+        return g2o_error(g.edges[0].measurement, Transform::Identity(), moved);
+      };
+      jacobian.col(k) = (error_at(kStep) - error_at(-kStep)) / (2 * kStep);
+    }
+    const Matrix6d meant = jacobian.transpose() * g.edges[0].information * jacobian;
+    EXPECT_LT((meant - link.result.information).norm(), 1e-5 * link.result.information.norm());
+  }
+}
+
+TEST(Outputs, RunJsonKeepsWhatVariesInOneSection) {
+  SurveyRecord record = sample_record(14);
+  auto first = nlohmann::json::parse(run_json(record));
+  EXPECT_EQ(first["counts"]["scans"], 15);
+  EXPECT_EQ(first["counts"]["placed"], 12);
+  EXPECT_EQ(first["components"][0]["scans"].size(), 12U);
+  EXPECT_EQ(first["versions"]["isthmus"], "0.1.0");
+  record.run.seconds = 999;
+  record.run.threads = 64;
+  auto second = nlohmann::json::parse(run_json(record));
+  EXPECT_NE(first, second);
+  first.erase("run"), second.erase("run");
+  EXPECT_EQ(first, second);
+  record.scans[0].name = "broken\xff name";
+  EXPECT_FALSE(nlohmann::json::parse(run_json(record)).is_discarded());
+}
+
+TEST(Outputs, EmptySurveyStillGivesEveryFile) {
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "isthmus_empty_outputs";
+  std::filesystem::remove_all(folder);
+  const Result<void> written = write_outputs(SurveyRecord{}, folder);
+  ASSERT_TRUE(written) << written.error().text();
+  for (const char* name : {"scans.csv", "poses.txt", "pose_graph.g2o", "links.csv", "timings.csv", "run.json", "report.html"})
+    EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
+  EXPECT_EQ(*read_file(folder / "poses.txt"), "");
+  EXPECT_NE(read_file(folder / "report.html")->find("No scan was found."), std::string::npos);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Html, IsSelfContainedAndEscapesNames) {
+  const SurveyRecord record = sample_record(20);
+  const std::string page = html_report(record);
+  for (const char* forbidden : {"http://", "https://", "src=", "@import", "url("})
+    EXPECT_EQ(page.find(forbidden), std::string::npos) << forbidden;
+  EXPECT_EQ(page.find("<quarter>"), std::string::npos);
+  EXPECT_NE(page.find("Old town &lt;quarter&gt;"), std::string::npos);
+  EXPECT_NE(page.find("18 of 21 scans stand in one survey."), std::string::npos);
+  EXPECT_NE(page.find("slides along the facade"), std::string::npos);
+  EXPECT_EQ(page, html_report(record));
+  if (const char* folder = std::getenv("ISTHMUS_KEEP_REPORTS")) {
+    for (const int n : {8, 20, 100}) {
+      std::ofstream(std::filesystem::path(folder) / fmt::format("report_{}.html", n)) << html_report(sample_record(n));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace isthmus::report

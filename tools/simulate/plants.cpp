@@ -52,7 +52,7 @@ void add_town_tree(Mesh& mesh, const Vector3d& root, double height_m, Rng& rng) 
                 Material::bark);
   }
   const Vector3d half(width, width * rng.uniform(0.85, 1.15), 0.42 * (height_m - trunk));
-  add_crown(mesh, fork + Vector3d(0, 0, 0.55 * (height_m - trunk)), half, 320, 0.45, rng);
+  add_crown(mesh, fork + Vector3d(0, 0, 0.55 * (height_m - trunk)), half, 520, 0.34, rng);
 }
 
 void add_forest_tree(Mesh& mesh, const Vector3d& root, double height_m, Rng& rng) {
@@ -80,7 +80,7 @@ void add_forest_tree(Mesh& mesh, const Vector3d& root, double height_m, Rng& rng
                 0.008, 4, Material::bark);
   }
   const double crown = height_m * rng.uniform(0.25, 0.4);
-  add_crown(mesh, axis.back() - Vector3d(0, 0, 0.5 * crown), {1.6, 1.6, 0.6 * crown}, 110, 0.4, rng);
+  add_crown(mesh, axis.back() - Vector3d(0, 0, 0.5 * crown), {1.6, 1.6, 0.6 * crown}, 160, 0.3, rng);
 }
 
 void add_bush(Mesh& mesh, const Vector3d& root, double radius_m, Rng& rng) {
@@ -91,7 +91,7 @@ void add_bush(Mesh& mesh, const Vector3d& root, double radius_m, Rng& rng) {
     add_frustum(mesh, root, tip, 0.015, 0.005, 4, Material::bark);
   }
   const Vector3d half(radius_m, radius_m, 0.8 * radius_m);
-  add_crown(mesh, root + Vector3d(0, 0, 0.8 * radius_m), half, static_cast<int>(90 + 60 * radius_m), 0.2, rng);
+  add_crown(mesh, root + Vector3d(0, 0, 0.8 * radius_m), half, static_cast<int>(160 + 120 * radius_m), 0.13, rng);
 }
 
 void add_stump(Mesh& mesh, const Vector3d& root, Rng& rng) {

@@ -13,8 +13,8 @@ struct Kind {
 };
 
 constexpr std::array kKinds = {
-    Kind{"office", 9.0, build_office},
-    Kind{"street", 30.0, build_street},
+    Kind{"office", 9.0, build_office},  Kind{"street", 30.0, build_street}, Kind{"campus", 32.0, build_campus},
+    Kind{"forest", 24.0, build_forest}, Kind{"tunnel", 48.0, build_tunnel}, Kind{"hall", 20.0, build_hall},
 };
 
 const Kind& kind_of(std::string_view name) {

@@ -75,8 +75,8 @@ std::string bar_chart(const Bars& bars, const std::array<std::string, 3>& axis, 
   }
   fmt::format_to(std::back_inserter(out), "<line class=\"axis\" x1=\"8\" y1=\"{0}\" x2=\"412\" y2=\"{0}\"/>", kBase + 0.5);
   for (int k = 0; k < 3; ++k)
-    fmt::format_to(std::back_inserter(out), "<text class=\"tick\" x=\"{}\" y=\"{}\">{}</text>", 10 + 198 * k, kHeight - 8,
-                   escaped(axis[k]));
+    fmt::format_to(std::back_inserter(out), "<text class=\"tick t{}\" x=\"{}\" y=\"{}\">{}</text>", k, 10 + 200 * k,
+                   kHeight - 8, escaped(axis[k]));
   return out + fmt::format("</svg><figcaption>{}</figcaption></figure>", escaped(caption));
 }
 

@@ -27,9 +27,9 @@ h1.good::before, h1.partly::before, h1.bad::before { content: ""; display: inlin
 h1.partly::before { background: var(--ambiguous); } h1.bad::before { background: var(--failed); }
 h2 { font-size: 20px; margin: 40px 0 12px; } h3 { font-size: 15px; margin: 0 0 8px; color: var(--quiet); font-weight: 600; }
 p.lead { font-size: 17px; max-width: 76ch; margin: 6px 0; } .quiet, figcaption { color: var(--quiet); font-size: 13px; }
-.tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(150px, 1fr)); gap: 12px; margin: 22px 0 4px; }
+.tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(148px, 1fr)); gap: 12px; margin: 22px 0 4px; }
 .tile { background: var(--card); border: 1px solid var(--rule); border-radius: 10px; padding: 12px 16px; }
-.tile b { display: block; font-size: 25px; font-weight: 650; letter-spacing: -.01em; } .tile span { color: var(--quiet); font-size: 13px; }
+.tile b { display: block; white-space: nowrap; font-size: 22px; font-weight: 650; letter-spacing: -.01em; } .tile span { color: var(--quiet); font-size: 13px; }
 .card { background: var(--card); border: 1px solid var(--rule); border-radius: 10px; padding: 16px; margin: 12px 0; }
 .two { display: grid; grid-template-columns: repeat(auto-fit, minmax(420px, 1fr)); gap: 12px; } .two .card { margin: 0; }
 svg { display: block; width: 100%; height: auto; } svg text { font: 11px system-ui, "DejaVu Sans", sans-serif; fill: var(--quiet); }
@@ -46,22 +46,23 @@ svg { display: block; width: 100%; height: auto; } svg text { font: 11px system-
 .plan .link:hover, .link.hot { stroke: var(--ink) !important; stroke-opacity: 1; cursor: pointer; display: inline; }
 .station .dot { fill: var(--card); stroke: var(--ink); stroke-width: 2; } .station.anchor .dot { fill: var(--ink); }
 .station .ring { fill: none; stroke: var(--ink); stroke-width: 1.2; } .station { cursor: pointer; }
-.station:hover .dot { fill: var(--accent); } .plan .station text { fill: var(--ink); font-size: 12px; paint-order: stroke; stroke: var(--sea);
-  stroke-width: 3px; stroke-linejoin: round; } .plan .many text { font-size: 9.5px; }
+.station:hover .dot { fill: var(--accent); } .plan .label { pointer-events: none; fill: var(--ink); font-size: 12px; paint-order: stroke; stroke: var(--sea);
+  stroke-width: 3px; stroke-linejoin: round; } .plan .many .label { font-size: 9.5px; }
 .scale path { stroke: var(--quiet); fill: none; stroke-width: 1.5; }
 .legend { display: flex; flex-wrap: wrap; gap: 6px 22px; align-items: center; font-size: 13px; color: var(--quiet); margin-top: 12px; }
 .legend .keys { display: inline-flex; flex-wrap: wrap; align-items: center; gap: 4px 7px; } .legend label { margin-left: 6px; cursor: pointer; }
 .swatch { width: 20px; height: 5px; border-radius: 3px; margin-left: 5px; } .swatch.c0 { background: var(--c0); } .swatch.c1 { background: var(--c1); }
 .swatch.c2 { background: var(--c2); } .swatch.c3 { background: var(--c3); } .swatch.c4 { background: var(--c4); }
-.swatch.square { height: 12px; width: 12px; } .swatch.ambiguous { background: var(--ambiguous); } .swatch.rejected { background: var(--rejected); }
+.swatch.square { height: 12px; width: 12px; } .swatch.ambiguous { border: 2px solid var(--ambiguous); } .swatch.rejected { background: var(--rejected); }
 .swatch.failed { background: var(--failed); } .swatch.overlap { background: var(--land); }
 .by-r, .hue-r .by-p { display: none !important; } .hue-r .by-r { display: inline-flex !important; }
 svg.key { width: 34px; height: 10px; margin-left: 8px; } svg.key.round { width: 20px; height: 20px; }
 .matrix .sheet { fill: var(--sea); } .matrix rect { stroke: none; } .matrix rect.diagonal { fill: var(--rule); }
-.matrix rect.ambiguous, .bars .ambiguous { fill: var(--ambiguous); } .matrix rect.rejected, .bars .rejected { fill: var(--rejected); }
+.bars .ambiguous { fill: var(--ambiguous); }
+.matrix rect.ambiguous { fill: var(--card); stroke: var(--ambiguous); stroke-width: 1.6; } .matrix rect.rejected, .bars .rejected { fill: var(--rejected); }
 .matrix rect.failed { fill: var(--failed); } .matrix rect.overlap { fill: var(--land); } .matrix rect:hover { stroke: var(--ink); stroke-width: 1.5; }
-.matrix .row { text-anchor: end; } .bars .accepted { fill: var(--accepted); } .bars text { text-anchor: middle; } .bars .tick { text-anchor: start; }
-.bars .axis { stroke: var(--rule); } figure { margin: 0; } figcaption { margin-top: 4px; }
+.matrix .row { text-anchor: end; } .bars .accepted { fill: var(--accepted); } .bars text { text-anchor: middle; } .bars .t0 { text-anchor: start; } .bars .t2 { text-anchor: end; }
+.bars .axis { stroke: var(--rule); } figure { margin: 0 0 14px; } figcaption { margin-top: 4px; }
 .scroll { overflow: auto; max-height: 560px; border: 1px solid var(--rule); border-radius: 10px; background: var(--card); }
 table { border-collapse: collapse; width: 100%; font-size: 13.5px; } td, th { padding: 5px 12px; text-align: left; vertical-align: top; white-space: nowrap; }
 .sortable th { position: sticky; top: 0; background: var(--card); box-shadow: inset 0 -1px var(--rule); cursor: pointer; font-weight: 600; z-index: 1; }

@@ -65,9 +65,16 @@ struct Layout {
 Layout laid_out(const SurveyRecord& record, const Component& component, const Sheet& sheet) {
   std::vector<Eigen::Vector3d> stations;
   for (const int id : component.scans) stations.push_back(station_in_component(record, *find_scan(record, id)));
-  const Eigen::Matrix<double, 2, 3> view = view_of(stations);
+  Eigen::Matrix<double, 2, 3> view = view_of(stations);
   Eigen::Vector2d low = Eigen::Vector2d::Constant(1e300), high = -low;
   for (const Eigen::Vector3d& p : stations) low = low.cwiseMin(view * p), high = high.cwiseMax(view * p);
+  if (high.y() - low.y() > high.x() - low.x()) {  // headings mean nothing here: lay the long side along the sheet
+    const Eigen::RowVector3d right = view.row(0);
+    view.row(0) = view.row(1);
+    view.row(1) = -right;
+    low = Eigen::Vector2d::Constant(1e300), high = -low;
+    for (const Eigen::Vector3d& p : stations) low = low.cwiseMin(view * p), high = high.cwiseMax(view * p);
+  }
   const Eigen::Vector2d span = (high - low).cwiseMax(1e-9);
   Layout layout;
   layout.px_per_m = std::min((sheet.width - 2 * sheet.margin) / span.x(), (sheet.height - 2 * sheet.margin) / span.y());
@@ -112,25 +119,72 @@ void draw_links(std::string& svg, const SurveyRecord& record, const Layout& layo
   svg += "</g>";
 }
 
+/// Median distance of a station to its nearest neighbour on the sheet.
+double typical_gap_px(const Layout& layout) {
+  std::vector<double> gaps;
+  for (const auto& [id, spot] : layout.spots) {
+    double nearest = 1e300;
+    for (const auto& [other, its] : layout.spots)
+      if (other != id) nearest = std::min(nearest, (spot.at - its.at).norm());
+    gaps.push_back(nearest);
+  }
+  std::nth_element(gaps.begin(), gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2), gaps.end());
+  return gaps[gaps.size() / 2];
+}
+
+/// Keeps labels from covering dots and each other: those that find no room are left out (the tooltip has the name).
+class LabelRoom {
+ public:
+  void keep_free(const Eigen::Vector2d& dot, double radius) {
+    taken_.push_back({dot.x() - radius, dot.x() + radius, dot.y() - radius, dot.y() + radius});
+  }
+  bool take(const Eigen::Vector2d& corner, std::size_t letters, double font_px) {
+    const Box box{corner.x(), corner.x() + 0.6 * font_px * static_cast<double>(letters), corner.y() - font_px, corner.y()};
+    for (const Box& b : taken_)
+      if (box.left < b.right && b.left < box.right && box.top < b.bottom && b.top < box.bottom) return false;
+    taken_.push_back(box);
+    return true;
+  }
+
+ private:
+  struct Box {
+    double left, right, top, bottom;
+  };
+  std::vector<Box> taken_;
+};
+
+std::string station_title(const ScanRecord& scan, const PlacedScan& placed, bool anchor) {
+  std::string title = fmt::format("{} (id {})\n{} points", scan.name, scan.id, large_number(scan.points));
+  if (anchor) title += "\nanchor: its frame is the frame of this part";
+  if (placed.sigma_m) title += fmt::format("\nposition known to {}", metres(*placed.sigma_m));
+  return title;
+}
+
 void draw_stations(std::string& svg, const SurveyRecord& record, const Component& component, const Layout& layout, bool large) {
   const bool many = component.scans.size() > kManyScans;
-  const double radius = many ? 4.5 : large ? 7.5 : 6.0;
+  const double radius = std::clamp(0.3 * typical_gap_px(layout), 2.5, large ? 7.5 : 6.0);
+  const double font_px = many ? 9.5 : 12;
+  LabelRoom room;
   fmt::format_to(std::back_inserter(svg), "<g class=\"stations{}\">", many ? " many" : "");
   for (const auto& [id, spot] : layout.spots) {
     const ScanRecord& scan = *find_scan(record, id);
-    const PlacedScan& placed = *record.solution.find(id);
-    std::string title = fmt::format("{} (id {})\n{} points", scan.name, id, large_number(scan.points));
-    if (id == component.anchor) title += "\nanchor: its frame is the frame of this part";
-    if (placed.sigma_m) title += fmt::format("\nposition known to {}", metres(*placed.sigma_m));
-    fmt::format_to(std::back_inserter(svg), "<g class=\"station{}\" data-scan=\"{}\"><title>{}</title>",
-                   id == component.anchor ? " anchor" : "", id, escaped(title));
-    if (id == component.anchor)
+    const bool anchor = id == component.anchor;
+    fmt::format_to(std::back_inserter(svg), "<g class=\"station{}\" data-scan=\"{}\"><title>{}</title>", anchor ? " anchor" : "", id,
+                   escaped(station_title(scan, *record.solution.find(id), anchor)));
+    if (anchor)
       fmt::format_to(std::back_inserter(svg), "<circle class=\"ring\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"/>", spot.at.x(),
                      spot.at.y(), radius + 4);
-    fmt::format_to(std::back_inserter(svg),
-                   "<circle class=\"dot\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"/><text x=\"{:.1f}\" y=\"{:.1f}\">{}</text></g>",
-                   spot.at.x(), spot.at.y(), radius, spot.at.x() + radius + 4, spot.at.y() - radius,
-                   escaped(many ? std::to_string(id) : short_name(scan.name, 14)));
+    fmt::format_to(std::back_inserter(svg), "<circle class=\"dot\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"/>", spot.at.x(),
+                   spot.at.y(), radius);
+    svg += "</g>";
+    room.keep_free(spot.at, radius);
+  }
+  for (const auto& [id, spot] : layout.spots) {
+    const std::string label = many ? fmt::format("{}", id) : short_name(find_scan(record, id)->name, 14);
+    const Eigen::Vector2d corner = spot.at + Eigen::Vector2d(radius + 4, -radius);
+    if (room.take(corner, label.size(), font_px))
+      fmt::format_to(std::back_inserter(svg), "<text class=\"label\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", corner.x(),
+                     corner.y(), escaped(label));
   }
   svg += "</g>";
 }

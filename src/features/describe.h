@@ -8,10 +8,10 @@
 namespace isthmus {
 
 struct FeatureOptions {
-  double iss_salient_voxels = 5.0;
+  double iss_radius_voxels = 5.0;
   double iss_gamma = 0.95;
   double keypoint_spacing_voxels = 2.0;
-  int max_keypoints = 6000;
+  int max_keypoints = 5000;
   double radius_voxels = 5.0;
   double large_radius_voxels = 10.0;
 };

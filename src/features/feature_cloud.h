@@ -12,8 +12,9 @@ struct DominantAxis {
   Eigen::Vector3f direction = Eigen::Vector3f::Zero();  ///< unit; sign: most points' normals along it agree
   float weight = 0;      ///< share of points whose normals are parallel or perpendicular to it
   float sigma_rad = 0;   ///< uncertainty of the direction
+  float sign_agreement = 0;  ///< 1: all normals along it point the same way (open ground), 0: as many each way (floor and ceiling)
   template <class F>
-  void fields(F&& f) { f(direction), f(weight), f(sigma_rad); }
+  void fields(F&& f) { f(direction), f(weight), f(sigma_rad), f(sign_agreement); }
 };
 
 struct FeatureCloud {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "config/option_table.h"
 #include "features/feature_cloud.h"
@@ -21,14 +22,28 @@ struct ScanProduct {
 };
 
 struct PairOptions {
-  int nearest_descriptors = 10;
+  std::vector<std::string> generators{"axis_votes", "pair_votes"};
+  int matches_per_keypoint = 15;
+  double vote_window_voxels = 16;
+  int max_seeds = 300;
+  int max_hypotheses = 150;
+  int congruent_hypotheses = 4;
+  int congruent_points = 600;
+  int score_points = 2000;
+  double accept_probability = 0.95;
+  double ambiguous_probability = 0.05;
 };
 const config::OptionTable<PairOptions>& pair_options_table();
+
+/// What each stage proposed, best first: for experiments, see tools/bench.
+struct PairTrace {
+  std::vector<Transform> seeds, grown, polished, congruent;
+};
 
 /// Registers source to target. `priors` are extra hypotheses (target_from_source between local frames) judged like the
 /// others. Deterministic for any thread count; uses TBB loops inside. Never throws for data reasons: a useless input gives
 /// Verdict::failed or rejected with a reason. Both scans must have the same voxel_m.
 PairResult register_pair(const ScanProduct& source, const ScanProduct& target, const PairOptions& options,
-                         std::span<const Transform> priors = {});
+                         std::span<const Transform> priors = {}, PairTrace* trace = nullptr);
 
 }  // namespace isthmus

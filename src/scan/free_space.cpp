@@ -1,9 +1,49 @@
 #include "scan/free_space.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace isthmus {
+
+namespace {
+
+FreeSpace halved(const FreeSpace& image) {
+  FreeSpace out;
+  out.size = image.size / 2;
+  out.nearest_m.assign(6 * static_cast<std::size_t>(out.size) * out.size, std::numeric_limits<float>::infinity());
+  for (std::size_t face = 0; face < 6; ++face)
+    for (std::size_t row = 0; row < image.size; ++row)
+      for (std::size_t column = 0; column < image.size; ++column) {
+        float& nearest = out.nearest_m[(face * out.size + row / 2) * out.size + column / 2];
+        nearest = std::min(nearest, image.nearest_m[(face * image.size + row) * image.size + column]);
+      }
+  return out;
+}
+
+// Of the cells next to a cell with a return, the share that hold one themselves.
+double filled_share(const FreeSpace& image) {
+  std::size_t beside = 0, filled = 0;
+  const std::size_t n = image.size;
+  for (std::size_t face = 0; face < 6; ++face)
+    for (std::size_t row = 1; row + 1 < n; ++row)
+      for (std::size_t column = 1; column + 1 < n; ++column) {
+        const float* cell = &image.nearest_m[(face * n + row) * n + column];
+        if (!std::isfinite(cell[-1]) && !std::isfinite(cell[1]) && !std::isfinite(*(cell - n)) && !std::isfinite(cell[n])) continue;
+        ++beside;
+        filled += std::isfinite(*cell);
+      }
+  return beside ? static_cast<double>(filled) / static_cast<double>(beside) : 0.0;
+}
+
+}  // namespace
+
+FreeSpace at_scan_resolution(const FreeSpace& raw) {
+  constexpr double kFilled = 0.8;
+  FreeSpace image = raw;
+  for (int level = 0; level < 3 && filled_share(image) < kFilled; ++level) image = halved(image);
+  return image;
+}
 
 FreeSpace dilated_free_space(const FreeSpace& raw) {
   constexpr int kNeighboursToFill = 3;

@@ -27,6 +27,10 @@ inline std::uint32_t cube_cell(const Eigen::Vector3f& d, std::uint32_t size) {
   return (face * size + row) * size + column;
 }
 
+/// The image at the finest resolution (its own, half, a quarter, an eighth) at which most cells beside a return hold one too:
+/// a thinned or sparse scan does not see between its beams. size must be a multiple of 8.
+FreeSpace at_scan_resolution(const FreeSpace& raw);
+
 /// Minimum over each cell and its neighbours on the same face; a cell without returns stays empty unless at least three
 /// neighbours have one (thinned scans leave holes). `nearest_m` as accumulated from raw points: +inf = nothing.
 FreeSpace dilated_free_space(const FreeSpace& raw);

@@ -1,6 +1,7 @@
 #include "scan/station.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "geometry/surface_lookup.h"
 
@@ -17,6 +18,7 @@ StationCheck check_station(std::span<const Eigen::Vector3f> points, std::span<co
   const SurfaceLookup lookup(points, voxel_m, 1);
   Eigen::Vector3d direction_sum = Eigen::Vector3d::Zero();
   std::size_t lines = 0, blocked = 0;
+  std::vector<float> ranges;
   const std::size_t stride = std::max<std::size_t>(1, points.size() / kLines);
   for (std::size_t i = 0; i < points.size(); i += stride) {
     const Eigen::Vector3f to_point = points[i] - station;
@@ -25,6 +27,7 @@ StationCheck check_station(std::span<const Eigen::Vector3f> points, std::span<co
     const Eigen::Vector3f u = to_point / range;
     direction_sum += u.cast<double>();
     ++lines;
+    ranges.push_back(range);
     const float end = range - kNearTargetVoxels * voxel_m;
     const float step = std::max(0.7f * voxel_m, end / 2000);
     for (float s = 0; s < end; s += step) {
@@ -39,6 +42,8 @@ StationCheck check_station(std::span<const Eigen::Vector3f> points, std::span<co
     }
   }
   if (lines == 0) return out;
+  std::nth_element(ranges.begin(), ranges.begin() + static_cast<std::ptrdiff_t>(lines / 2), ranges.end());
+  out.median_range_m = ranges[lines / 2];
   out.blocked = static_cast<double>(blocked) / static_cast<double>(lines);
   out.concentration = direction_sum.norm() / static_cast<double>(lines);
   return out;

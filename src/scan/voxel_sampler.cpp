@@ -14,14 +14,20 @@
 namespace isthmus {
 namespace {
 
-constexpr std::uint32_t kCubeSize = 90;           // 1 degree cells in the middle of a face
+constexpr std::uint32_t kCubeSize = 240;          // 0.4 degree cells; coarser where the scan is
 constexpr std::uint32_t kMinVoxelNeighbours = 4;  // fewer voxels around (itself included): a stray point
 constexpr double kLogRangeStep = 2e-4;            // relative width of a bin of the range histogram
 constexpr double kSmallestRange = 1e-5;
 constexpr std::size_t kRangeBins = 140000;        // up to 1e-5 * exp(28) m: beyond any range
-// A station is believed when hardly a sight line is blocked and the points lie round it rather than in one direction.
-constexpr double kMaxBlocked = 0.10;
+// The origin is believed to be the station unless the points speak against it. Measured at true stations: up to 19 % blocked
+// sight lines in thinned real scans, 35 % in furnished offices, concentration up to 0.81 (a SICK on a tilt unit); fused
+// fragments and single views of objects have a concentration above 0.88.
+constexpr double kMaxBlocked = 0.45;
 constexpr double kMaxConcentration = 0.85;
+// Closer than this, and not all round, it is an object before a camera in some frame of its own: no terrestrial scanner
+// measures from there.
+constexpr double kObjectRangeM = 1.0;
+constexpr double kObjectConcentration = 0.4;
 
 struct Voxel {
   std::uint64_t key = 0;
@@ -258,13 +264,15 @@ Result<SampledScan> VoxelSampler::finish() {
   out.spacing_m = typical_spacing(out);
   StationCheck check;
   if (s.candidate_station) check = check_station(out.points, out.normals, static_cast<float>(s.voxel_m), *s.candidate_station);
-  const bool believed = s.candidate_station && (s.options.station == "origin" ||
-                                                (check.blocked < kMaxBlocked && check.concentration < kMaxConcentration));
+  const bool object = check.median_range_m < kObjectRangeM && check.concentration > kObjectConcentration;
+  const bool believed = s.candidate_station && (s.options.station == "origin" || (check.blocked < kMaxBlocked && !object &&
+                                                                                  check.concentration < kMaxConcentration));
   if (believed) {
     out.station_kind = StationKind::origin;
     out.station = *s.candidate_station;
+    out.blocked_share = check.blocked;
     orient_to_station(out.points, out.station, out.normals);
-    out.free_space = dilated_free_space(s.raw);
+    out.free_space = dilated_free_space(at_scan_resolution(s.raw));
   } else {
     orient_outwards(out.points, static_cast<float>(s.voxel_m), out.normals);
     out.notes.push_back(s.candidate_station

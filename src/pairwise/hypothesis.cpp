@@ -1,0 +1,141 @@
+#include "pairwise/hypothesis.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "regions/align.h"
+
+namespace isthmus {
+namespace {
+
+std::vector<std::uint32_t> even_sample(const ScanModel& model, std::size_t max_points) {
+  const std::size_t n = model.scan.points.size(), count = std::min(n, max_points);
+  std::vector<std::uint32_t> sample(count);
+  for (std::size_t k = 0; k < count; ++k) sample[k] = static_cast<std::uint32_t>(k * n / count);
+  return sample;
+}
+
+struct Profile {
+  std::vector<float> support;  // per sampled point
+  double contradiction = 0, against = 0;
+};
+
+// Tolerance along the normal: flat surfaces meet within a quarter voxel, rough ones within their roughness.
+float tolerance_voxels(float variation) { return 0.25f + 1.2f * std::sqrt(variation); }
+
+Profile profile(const ScanModel& from, const ScanModel& to, const Transform& to_from, std::span<const std::uint32_t> sample) {
+  constexpr float kMinFacing = 0.5f, kFreeToleranceVoxels = 1.5f;
+  const Eigen::Matrix3f rotation = to_from.linear().cast<float>();
+  const Eigen::Vector3f translation = to_from.translation().cast<float>();
+  Profile out;
+  out.support.assign(sample.size(), 0.0f);
+  std::size_t contradicted = 0, against = 0;
+  for (std::size_t k = 0; k < sample.size(); ++k) {
+    const Eigen::Vector3f p = rotation * from.scan.points[sample[k]] + translation;
+    const std::int32_t j = to.fine.near(p);
+    if (j < 0) {
+      contradicted += to.seen_through(p, kFreeToleranceVoxels * to.voxel_m);
+      continue;
+    }
+    const Eigen::Vector3f& n = to.scan.normals[j];
+    const float facing = n.dot(rotation * from.scan.normals[sample[k]]);
+    if (facing < -kMinFacing) ++against;
+    if (facing < kMinFacing) continue;
+    const float ratio = n.dot(p - to.scan.points[j]) / (to.voxel_m * tolerance_voxels(to.scan.variation[j]));
+    out.support[k] = std::max(0.0f, 1 - ratio * ratio);
+  }
+  const double scale = sample.empty() ? 0.0 : 1.0 / static_cast<double>(sample.size());
+  out.contradiction = static_cast<double>(contradicted) * scale;
+  out.against = static_cast<double>(against) * scale;
+  return out;
+}
+
+std::vector<float> rarity(const std::vector<Profile>& profiles, std::size_t n) {
+  std::vector<float> weight(n, 0);
+  for (const Profile& p : profiles)
+    for (std::size_t i = 0; i < n; ++i) weight[i] += p.support[i];
+  const float total = static_cast<float>(profiles.size());
+  for (float& w : weight) w = std::log((total + 1) / (std::max(w, 1.0f))) / std::log(total + 1);
+  return weight;
+}
+
+DirectedEvidence summary(const Profile& p, const std::vector<float>& weight) {
+  DirectedEvidence out;
+  for (std::size_t i = 0; i < weight.size(); ++i) {
+    out.support += static_cast<double>(p.support[i]);
+    out.rare_support += static_cast<double>(p.support[i] * weight[i]);
+  }
+  const double n = std::max<double>(1, static_cast<double>(weight.size()));
+  out.support /= n;
+  out.rare_support /= n;
+  out.contradiction = p.contradiction;
+  out.against = p.against;
+  return out;
+}
+
+}  // namespace
+
+void polish(const ScanModel& source, const ScanModel& target, std::size_t max_points, int steps, Hypothesis& hypothesis) {
+  const auto from = even_sample(source, max_points), to = even_sample(target, max_points);
+  constexpr std::size_t kMinMatches = 12;
+  Transform t = hypothesis.target_from_source;
+  const float voxel = source.voxel_m;
+  for (int step = 0; step < steps; ++step) {
+    const float gate = voxel * (step * 2 < steps ? 1.0f : 0.5f);
+    const Eigen::Vector3d middle = t * source.centroid.cast<double>();
+    NormalEquations forward, backward;
+    add_point_to_plane(source, target, t, from, false, gate, middle, forward);
+    add_point_to_plane(target, source, t.inverse(), to, false, gate, source.centroid.cast<double>(), backward);
+    if (forward.matches + backward.matches < kMinMatches) break;
+    // The backward step moves the target in the source frame; seen from the target it is the inverse motion: x -> -R x.
+    Matrix6d to_target = Matrix6d::Zero();
+    to_target.topLeftCorner<3, 3>() = -t.linear();
+    to_target.bottomRightCorner<3, 3>() = -t.linear();
+    forward.a += to_target * backward.a * to_target.transpose();
+    forward.b += to_target * backward.b;
+    t = solved_step(forward, middle, voxel) * t;
+    hypothesis.rms_m = std::sqrt((forward.sq_residual_sum + backward.sq_residual_sum) /
+                                 std::max(forward.weight + backward.weight, 1e-12));
+  }
+  hypothesis.target_from_source = orthonormalised(t);
+}
+
+void keep_distinct(const ScanModel& source, double position_m, std::vector<Hypothesis>& hypotheses) {
+  std::stable_sort(hypotheses.begin(), hypotheses.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
+  const Eigen::Vector3d middle = source.centroid.cast<double>();
+  const double reach = static_cast<double>(source.extent_m);
+  std::vector<Hypothesis> kept;
+  for (const Hypothesis& h : hypotheses) {
+    const bool known = std::any_of(kept.begin(), kept.end(), [&](const Hypothesis& k) {
+      const Eigen::Vector3d moved = h.target_from_source * middle - k.target_from_source * middle;
+      if (moved.norm() > position_m) return false;
+      const double turn = rotation_angle_rad(k.target_from_source.linear().transpose() * h.target_from_source.linear());
+      return turn * reach < 2 * position_m;
+    });
+    if (!known) kept.push_back(h);
+  }
+  hypotheses = std::move(kept);
+}
+
+void weigh(const ScanModel& source, const ScanModel& target, std::size_t max_points, std::vector<Hypothesis>& hypotheses) {
+  constexpr double kContradictionWeight = 5;
+  const auto from = even_sample(source, max_points), to = even_sample(target, max_points);
+  std::vector<Profile> forward(hypotheses.size()), backward(hypotheses.size());
+  parallel_for_index(hypotheses.size(), 4, [&](std::size_t k) {
+    forward[k] = profile(source, target, hypotheses[k].target_from_source, from);
+    backward[k] = profile(target, source, hypotheses[k].target_from_source.inverse(), to);
+  });
+  const std::vector<float> from_weight = rarity(forward, from.size()), to_weight = rarity(backward, to.size());
+  for (std::size_t k = 0; k < hypotheses.size(); ++k) {
+    Hypothesis& h = hypotheses[k];
+    h.source = summary(forward[k], from_weight);
+    h.target = summary(backward[k], to_weight);
+    h.score = std::min(h.source.rare_support, h.target.rare_support) +
+              0.25 * std::max(h.source.rare_support, h.target.rare_support) -
+              kContradictionWeight * 0.5 * (h.source.contradiction + h.target.contradiction);
+  }
+  std::stable_sort(hypotheses.begin(), hypotheses.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
+}
+
+}  // namespace isthmus

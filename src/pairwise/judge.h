@@ -1,0 +1,31 @@
+// From evidence to a probability and a verdict.
+#pragma once
+
+#include "pairwise/hypothesis.h"
+#include "pairwise/pair_result.h"
+#include "pairwise/register_pair.h"
+
+namespace isthmus {
+
+/// The terms the verdict is made of, in a fixed order.
+struct PairEvidence {
+  double score = 0;            ///< of the best hypothesis, see weigh()
+  double rival_score = 0;      ///< of the best distinct other hypothesis, at least 0
+  double support = 0;          ///< the smaller direction
+  double rare_support = 0;     ///< the smaller direction
+  double contradiction = 0;    ///< the larger direction
+  double against = 0;          ///< the larger direction
+  double rms_voxels = 0;
+  double observability = 0;    ///< smallest over largest stiffness against translation, 0 = slides freely
+  double num_supported = 0;    ///< voxel points on the other scan's surface, the smaller direction
+  bool free_space = false;     ///< at least one scan has a known station
+};
+
+/// Probability that the best hypothesis is right: logistic regression over the evidence, see docs/stages/verdict.md for the
+/// sets it was fitted on and the sets it was checked on.
+double probability_of(const PairEvidence& evidence);
+
+/// Verdict, probability and reason of `result`, from its evidence.
+void judge(const PairEvidence& evidence, const PairOptions& options, PairResult& result);
+
+}  // namespace isthmus

@@ -1,0 +1,56 @@
+#include "regions/align.h"
+
+#include <Eigen/Cholesky>
+
+namespace isthmus {
+
+void add_point_to_plane(const ScanModel& source, const ScanModel& target, const Transform& target_from_source,
+                        std::span<const std::uint32_t> sample, bool coarse, float gate_m, const Eigen::Vector3d& centre,
+                        NormalEquations& equations) {
+  constexpr float kMinFacing = 0.5f;
+  const Eigen::Matrix3f rotation = target_from_source.linear().cast<float>();
+  const Eigen::Vector3f translation = target_from_source.translation().cast<float>();
+  const Eigen::Vector3f middle = centre.cast<float>();
+  const SurfaceLookup& lookup = coarse ? target.coarse : target.fine;
+  Eigen::Matrix<float, 6, 6> a = Eigen::Matrix<float, 6, 6>::Zero();
+  Eigen::Matrix<float, 6, 1> b = Eigen::Matrix<float, 6, 1>::Zero();
+  for (const std::uint32_t i : sample) {
+    const Eigen::Vector3f p = rotation * source.scan.points[i] + translation;
+    const std::int32_t j = lookup.near(p);
+    if (j < 0 || target.scan.variation[j] >= 1.0f) continue;
+    const Eigen::Vector3f& n = target.scan.normals[j];
+    if (n.dot(rotation * source.scan.normals[i]) < kMinFacing) continue;
+    const float r = n.dot(p - target.scan.points[j]);
+    const float ratio = r / gate_m;
+    if (ratio * ratio >= 1) continue;
+    const float w = (1 - ratio * ratio) * (1 - ratio * ratio);
+    Eigen::Matrix<float, 6, 1> j6;
+    j6 << n, (p - middle).cross(n);
+    a.noalias() += w * j6 * j6.transpose();
+    b.noalias() -= w * r * j6;
+    equations.weight += w;
+    equations.sq_residual_sum += static_cast<double>(w * r * r);
+    ++equations.matches;
+  }
+  equations.a += a.cast<double>();
+  equations.b += b.cast<double>();
+}
+
+Transform solved_step(const NormalEquations& equations, const Eigen::Vector3d& centre, double voxel_m) {
+  constexpr double kDamping = 1e-3;  // of the average stiffness: unobserved directions stay
+  Matrix6d a = equations.a;
+  const double translation = a.topLeftCorner<3, 3>().trace() / 3, rotation = a.bottomRightCorner<3, 3>().trace() / 3;
+  for (int k = 0; k < 3; ++k) {
+    a(k, k) += kDamping * translation + 1e-12;
+    a(k + 3, k + 3) += kDamping * rotation + 1e-12 * voxel_m * voxel_m;
+  }
+  const Vector6d x = a.ldlt().solve(equations.b);
+  Transform step = Transform::Identity();
+  if (!x.allFinite()) return step;
+  const Eigen::Matrix3d turn = rotation_from_vector(x.tail<3>());
+  step.linear() = turn;
+  step.translation() = centre + x.head<3>() - turn * centre;
+  return step;
+}
+
+}  // namespace isthmus

@@ -1,0 +1,36 @@
+#include "regions/scan_model.h"
+
+#include <algorithm>
+
+#include "scan/free_space.h"
+
+namespace isthmus {
+
+ScanModel::ScanModel(const SampledScan& sampled, const FeatureCloud& cloud, const RegionMap& map)
+    : scan(sampled),
+      features(cloud),
+      regions(map),
+      voxel_m(static_cast<float>(sampled.voxel_m)),
+      fine(sampled.points, voxel_m, 1),
+      coarse(sampled.points, 2 * voxel_m, 1) {
+  if (scan.points.empty()) return;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const auto& p : scan.points) sum += p.cast<double>();
+  centroid = (sum / static_cast<double>(scan.points.size())).cast<float>();
+  std::vector<float> distance(scan.points.size());
+  for (std::size_t i = 0; i < distance.size(); ++i) distance[i] = (scan.points[i] - centroid).norm();
+  const auto k = static_cast<std::ptrdiff_t>(distance.size() * 95 / 100);
+  std::nth_element(distance.begin(), distance.begin() + k, distance.end());
+  extent_m = distance[static_cast<std::size_t>(k)];
+}
+
+bool ScanModel::seen_through(const Eigen::Vector3f& p, float tolerance_m) const {
+  constexpr float kRelativeTolerance = 0.02f;
+  if (scan.free_space.size == 0) return false;
+  const Eigen::Vector3f ray = p - scan.station;
+  const float nearest = scan.free_space.nearest_m[cube_cell(ray, scan.free_space.size)];
+  const float range = ray.norm();
+  return std::isfinite(nearest) && range < nearest - tolerance_m - kRelativeTolerance * range;
+}
+
+}  // namespace isthmus

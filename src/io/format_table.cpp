@@ -58,7 +58,22 @@ Result<const Format*> format_of(const std::filesystem::path& path) {
   for (const Format& format : kFormats) {
     if (lists(format.extensions, extension)) return &format;
   }
+  if (extension == "laz") {
+    return fail("unsupported format '.laz': compressed LAS", path.string(), "decompress it: laszip, or pdal translate");
+  }
   return fail("unsupported format " + in_quotes("." + extension), path.string(), "readable: " + readable_extensions());
+}
+
+std::size_t preference_of(const std::filesystem::path& path) {
+  const std::string extension = extension_of(path);
+  std::size_t rank = 0;
+  for (const Format& format : kFormats) {
+    for (const auto word : words_of(format.extensions)) {
+      if (word == extension) return rank;
+      ++rank;
+    }
+  }
+  return rank;
 }
 
 bool is_known_but_unsupported(const std::filesystem::path& path) { return lists(kUnsupported, extension_of(path)); }

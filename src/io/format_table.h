@@ -23,6 +23,9 @@ std::span<const Format> formats();
 /// The format by the path's extension (case does not matter); an error 'unsupported format' otherwise.
 Result<const Format*> format_of(const std::filesystem::path& path);
 
+/// Place of the path's extension in that order, smaller is preferred; formats that cannot be read come last.
+std::size_t preference_of(const std::filesystem::path& path);
+
 /// The extension belongs to a scan format, though one we cannot read (E57, LAZ, makers' own formats).
 bool is_known_but_unsupported(const std::filesystem::path& path);
 

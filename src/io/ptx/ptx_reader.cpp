@@ -143,7 +143,7 @@ OpenedScan open_ptx(const ScanRef& scan) {
   if (!ptx) return tl::unexpected(std::move(ptx.error()));
   if (ptx->num_lines == 0) return fail("the scan holds no points", at_line(file->name(), place.first_line));
   TextBlock block = {file->offset(), lines.number() + 1, place.end_byte, true, ptx->num_lines, true, true};
-  auto sample = sample_of_lines(*file, block.begin_line);
+  auto sample = sample_of_lines(*file, block.begin_line, block.end_byte);
   if (!sample) return tl::unexpected(std::move(sample.error()));
   const GuessedColumns guess = guess_columns(*sample, ' ');
   ScanHeader header;

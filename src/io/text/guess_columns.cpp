@@ -58,12 +58,13 @@ bool is_colour(FieldRole role) {
 
 }  // namespace
 
-Result<std::vector<std::string>> sample_of_lines(InputFile& file, std::uint64_t line_number) {
+Result<std::vector<std::string>> sample_of_lines(InputFile& file, std::uint64_t line_number, std::uint64_t end_byte) {
   const std::uint64_t place = file.offset();
+  const std::uint64_t end = std::min(end_byte, place + kSampleBytes);
   LineReader lines(file, line_number);
   std::vector<std::string> sample;
   std::string_view line;
-  while (sample.size() < kSampleLines && lines.next_offset() < place + kSampleBytes) {
+  while (sample.size() < kSampleLines && lines.next_offset() < end) {
     auto got = lines.next(line);
     if (!got) return tl::unexpected(std::move(got.error()));
     if (!*got) break;
@@ -74,7 +75,8 @@ Result<std::vector<std::string>> sample_of_lines(InputFile& file, std::uint64_t 
 }
 
 GuessedColumns guess_columns(const std::vector<std::string>& lines, char delimiter) {
-  const Table table = numbers_of(lines, delimiter);
+  Table table = numbers_of(lines, delimiter);
+  if (table.size() > 1) table.pop_back();  // the last line may be cut short
   std::size_t width = table.empty() ? 0 : table.front().size();
   for (const auto& row : table) width = std::min(width, row.size());
   GuessedColumns guess;

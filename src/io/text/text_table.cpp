@@ -140,7 +140,8 @@ Result<TextTable> detect_table(InputFile& file) {
                             "export with decimal points"};
       return table;
     }
-    if (!is_comment_or_empty(line) && is_point_line(line)) first = std::string(line);
+    const bool named = names_of(intro.names_line).num_known == 3;  // then the first columns may hold anything
+    if (!is_comment_or_empty(line) && (named || is_point_line(line))) first = std::string(line);
     if (first.empty()) take_intro_line(line, lines.number(), intro);
   }
   const Names names = names_of(intro.names_line);
@@ -152,7 +153,7 @@ Result<TextTable> detect_table(InputFile& file) {
   table.begin_line = lines.number();
   table.num_lines = intro.count;
   file.seek(table.begin_byte);
-  auto sample = sample_of_lines(file, table.begin_line);
+  auto sample = sample_of_lines(file, table.begin_line, file.size());
   if (!sample) return tl::unexpected(std::move(sample.error()));
   const char delimiter = delimiter_of(first);
   GuessedColumns guess = guess_columns(*sample, delimiter);

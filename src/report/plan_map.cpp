@@ -138,8 +138,9 @@ class LabelRoom {
   void keep_free(const Eigen::Vector2d& dot, double radius) {
     taken_.push_back({dot.x() - radius, dot.x() + radius, dot.y() - radius, dot.y() + radius});
   }
-  bool take(const Eigen::Vector2d& corner, std::size_t letters, double font_px) {
-    const Box box{corner.x(), corner.x() + 0.6 * font_px * static_cast<double>(letters), corner.y() - font_px, corner.y()};
+  static double length(std::size_t letters, double font_px) { return 0.58 * font_px * static_cast<double>(letters); }
+  bool take(const Eigen::Vector2d& corner, double length, double font_px) {
+    const Box box{corner.x(), corner.x() + length, corner.y() - font_px, corner.y()};
     for (const Box& b : taken_)
       if (box.left < b.right && b.left < box.right && box.top < b.bottom && b.top < box.bottom) return false;
     taken_.push_back(box);
@@ -181,10 +182,14 @@ void draw_stations(std::string& svg, const SurveyRecord& record, const Component
   }
   for (const auto& [id, spot] : layout.spots) {
     const std::string label = many ? fmt::format("{}", id) : short_name(find_scan(record, id)->name, 14);
-    const Eigen::Vector2d corner = spot.at + Eigen::Vector2d(radius + 4, -radius);
-    if (room.take(corner, label.size(), font_px))
-      fmt::format_to(std::back_inserter(svg), "<text class=\"label\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", corner.x(),
-                     corner.y(), escaped(label));
+    const double length = LabelRoom::length(label.size(), font_px), off = radius + 4;
+    for (const Eigen::Vector2d& shift : {Eigen::Vector2d(off, -radius), Eigen::Vector2d(-off - length, -radius),
+                                         Eigen::Vector2d(off, radius + font_px), Eigen::Vector2d(-off - length, radius + font_px)})
+      if (const Eigen::Vector2d corner = spot.at + shift; room.take(corner, length, font_px)) {
+        fmt::format_to(std::back_inserter(svg), "<text class=\"label\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", corner.x(),
+                       corner.y(), escaped(label));
+        break;
+      }
   }
   svg += "</g>";
 }

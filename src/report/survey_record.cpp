@@ -29,15 +29,7 @@ const char* word(ScanStatus status) {
   return "unknown";
 }
 
-const char* word(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::accepted: return "accepted";
-    case Verdict::ambiguous: return "ambiguous";
-    case Verdict::rejected: return "rejected";
-    case Verdict::failed: return "failed";
-  }
-  return "unknown";
-}
+const char* word(Verdict verdict) { return to_string(verdict); }
 
 const char* word(StationKind kind) {
   switch (kind) {

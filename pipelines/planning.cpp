@@ -76,12 +76,16 @@ std::size_t bytes_to_make(const io::ScanRef& ref, const ScanScale& scale, double
 
 }  // namespace
 
-SurveyPlan plan_survey(const std::vector<io::ScanRef>& scans, const Settings& settings, const store::Store& store,
+SurveyPlan plan_survey(const std::vector<io::ListedScan>& scans, const Settings& settings, const store::Store& store,
                        const Events& events, const std::atomic<bool>& stop) {
   std::vector<Look> looks(scans.size());
   std::atomic<std::size_t> done{0};
   parallel_for_index(scans.size(), 1, [&](std::size_t i) {
-    if (!stop) looks[i] = look_at(scans[i], settings, store);
+    if (scans[i].error) {
+      looks[i].error = scans[i].error;
+    } else if (!stop) {
+      looks[i] = look_at(scans[i].scan, settings, store);
+    }
     events.advance("look", done.fetch_add(1) + 1, scans.size());
   });
   SurveyPlan plan;
@@ -103,8 +107,9 @@ SurveyPlan plan_survey(const std::vector<io::ScanRef>& scans, const Settings& se
       plan.failed.push_back({id, *looks[i].error});
       continue;
     }
-    plan.scans.push_back(make_plan(id, scans[i], looks[i].content, plan.voxel_m, digests));
-    plan.scans.back().bytes = bytes_to_make(scans[i], *looks[i].scale, plan.voxel_m, settings.sampling.target_points);
+    plan.scans.push_back(make_plan(id, scans[i].scan, looks[i].content, plan.voxel_m, digests));
+    plan.scans.back().bytes =
+        bytes_to_make(scans[i].scan, *looks[i].scale, plan.voxel_m, settings.sampling.target_points);
   }
   return plan;
 }

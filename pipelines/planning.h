@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "io/scan_directory.h"
 #include "pipelines/events.h"
 #include "pipelines/scan_products.h"
 
@@ -27,7 +28,7 @@ struct SurveyPlan {
 /// Reads digests and probes of all scans in parallel. An id is an index into `scans`. The voxel is the one from the
 /// settings or follows from all scans together; it does not depend on their order. Scans that are empty or unreadable
 /// are in `failed`.
-SurveyPlan plan_survey(const std::vector<io::ScanRef>& scans, const Settings& settings, const store::Store& store,
+SurveyPlan plan_survey(const std::vector<io::ListedScan>& scans, const Settings& settings, const store::Store& store,
                        const Events& events, const std::atomic<bool>& stop);
 
 }  // namespace isthmus::pipelines

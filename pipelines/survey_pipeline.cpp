@@ -347,11 +347,11 @@ void count_products(SurveyOutcome& out, std::size_t made_again) {
 
 }  // namespace
 
-SurveyOutcome run_survey(const std::vector<io::ScanRef>& scans, const Settings& settings, const store::Store& store,
+SurveyOutcome run_survey(const std::vector<io::ListedScan>& scans, const Settings& settings, const store::Store& store,
                          const Events& events, const std::atomic<bool>& stop) {
   SurveyOutcome out;
   for (std::size_t i = 0; i < scans.size(); ++i) {
-    out.scans.push_back({static_cast<int>(i), scans[i], std::nullopt, std::nullopt, {}});
+    out.scans.push_back({static_cast<int>(i), scans[i].scan, std::nullopt, std::nullopt, {}});
   }
   const auto threads = static_cast<std::size_t>(threads_of(settings.run));
   const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);

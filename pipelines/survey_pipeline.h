@@ -54,7 +54,7 @@ struct SurveyOutcome {
 
 /// Runs in an arena of its own with settings.run.threads threads. `scans` sorted by name: the index is the id. `stop`
 /// may be set at any time (signals): work in flight is finished and stored, nothing else is begun.
-SurveyOutcome run_survey(const std::vector<io::ScanRef>& scans, const Settings& settings, const store::Store& store,
+SurveyOutcome run_survey(const std::vector<io::ListedScan>& scans, const Settings& settings, const store::Store& store,
                          const Events& events, const std::atomic<bool>& stop);
 
 }  // namespace isthmus::pipelines

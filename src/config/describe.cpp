@@ -70,6 +70,15 @@ std::string resolved_yaml(std::span<const Stage> stages, const Origins& origins,
   return out;
 }
 
+std::string values_yaml(std::span<const Stage> stages) {
+  std::string out;
+  for (const Stage& stage : stages) {
+    out += stage.name + ":\n";
+    for (const Option& option : stage.options) out += fmt::format("  {}: {}\n", option.key, option.text());
+  }
+  return out;
+}
+
 std::string explanation(const Option& option) {
   std::string out =
       fmt::format("{} ({})\n{}\ndefault: {}\n", option.full_key(), domain(option), option.help, option.default_text);

@@ -14,6 +14,9 @@ std::string annotated_yaml(std::span<const Stage> stages);
 /// Every option with its present value, and behind it where the value came from. `indent` spaces before each line.
 std::string resolved_yaml(std::span<const Stage> stages, const Origins& origins, int indent);
 
+/// Every option with its present value and nothing else.
+std::string values_yaml(std::span<const Stage> stages);
+
 /// What one key does: for `isthmus config explain KEY`.
 std::string explanation(const Option& option);
 

@@ -20,14 +20,14 @@ using Member = std::variant<bool T::*, int T::*, double T::*, std::string T::*, 
 
 template <class T>
 struct OptionRow {
-  std::string key;     ///< within the stage: "voxel_m"
+  std::string key;  ///< within the stage: "voxel_m"
   Member<T> member;
-  std::string unit;    ///< "m", "deg", "voxels", "" for counts, names and ratios
+  std::string unit;                                       ///< "m", "deg", "voxels", "" for counts, names and ratios
   double min = -std::numeric_limits<double>::infinity();  ///< smallest allowed number, inclusive
   double max = std::numeric_limits<double>::infinity();   ///< largest allowed number, inclusive
-  std::vector<std::string> choices;  ///< allowed words; empty = any
-  std::string help;    ///< one or two sentences for a surveyor
-  std::string source;  ///< why this default: a paper, a sensor fact, a benchmark page in docs
+  std::vector<std::string> choices;                       ///< allowed words; empty = any
+  std::string help;                                       ///< one or two sentences for a surveyor
+  std::string source;           ///< why this default: a paper, a sensor fact, a benchmark page in docs
   bool affects_results = true;  ///< false: threads, memory, logging; left out of artifact keys
 };
 

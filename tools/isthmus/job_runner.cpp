@@ -1,0 +1,78 @@
+#include "job_runner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "exit_codes.h"
+#include "pipelines/run_job.h"
+#include "report/run_json.h"
+#include "stop_signal.h"
+
+namespace isthmus::cli {
+namespace {
+
+struct Ended {
+  int exit_code = kFailure;
+  std::string summary;
+};
+
+std::string summary_of(const pipelines::JobResult& result, const pipelines::Job& job) {
+  const report::SurveyCounts counts = report::count(result.record);
+  std::string text = fmt::format("{} of {} scans in the largest component, {} links accepted of {} pairs tried",
+                                 counts.in_largest, counts.scans, counts.accepted, counts.pairs);
+  if (counts.components > 1) text += fmt::format(", {} components", counts.components);
+  if (counts.failed > 0) text += fmt::format(", {} scans unreadable", counts.failed);
+  return text + fmt::format("; report: {}", (job.output / "report.html").string());
+}
+
+Ended run_one(const pipelines::Job& job, const std::string& command, Terminal& terminal) {
+  const pipelines::Events events = terminal.events();
+  const Result<pipelines::JobResult> result = pipelines::run_job(job, command, events, stop_requested());
+  if (!result) {
+    terminal.error(result.error());
+    return {kFailure, "failed: " + result.error().text()};
+  }
+  if (result->num_found > 0) {
+    terminal.say(fmt::format("{} products found in the store, {} made", result->num_found, result->num_made));
+  }
+  switch (result->end) {
+    case pipelines::JobEnd::connected:
+      return {kSuccess, summary_of(*result, job)};
+    case pipelines::JobEnd::unconnected:
+      return {kUnconnected, summary_of(*result, job)};
+    case pipelines::JobEnd::stopped:
+      break;
+  }
+  return {kSignalBase + stop_signal(),
+          fmt::format("stopped; what was finished is kept in {}: the same command goes on from there",
+                      pipelines::store_folder(job).string())};
+}
+
+/// The exit code that tells most: a stop, then a failure, then unconnected scans.
+int worse(int a, int b) {
+  const auto rank = [](int code) {
+    return code >= kSignalBase ? 3 : code == kFailure ? 2 : code == kUnconnected ? 1 : 0;
+  };
+  return rank(a) >= rank(b) ? a : b;
+}
+
+}  // namespace
+
+int run_jobs(const std::vector<pipelines::Job>& jobs, const std::string& command, Terminal& terminal) {
+  catch_stop_signals();
+  int exit_code = kSuccess;
+  std::vector<std::string> lines;
+  for (const pipelines::Job& job : jobs) {
+    if (jobs.size() > 1) terminal.say(fmt::format("{}: {}", job.origin, job.output.string()));
+    const Ended ended = run_one(job, command, terminal);
+    exit_code = worse(exit_code, ended.exit_code);
+    lines.push_back(jobs.size() > 1 ? fmt::format("{} ({}): {}", job.origin, job.output.string(), ended.summary)
+                                    : ended.summary);
+    if (stop_requested()) break;
+  }
+  for (const std::string& line : lines) fmt::print("{}\n", line);
+  return exit_code;
+}
+
+}  // namespace isthmus::cli

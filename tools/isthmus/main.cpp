@@ -1,0 +1,50 @@
+// isthmus: stitches terrestrial laser scans into a pose graph.
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <exception>
+
+#include "commands.h"
+#include "exit_codes.h"
+#include "isthmus_version.h"
+
+namespace {
+
+constexpr const char* kAbout =
+    "Isthmus stitches terrestrial laser scans: a folder of scans becomes a graph of poses.\n"
+    "No targets, no start positions, no known overlap are needed; scans may lie in any order.\n\n"
+    "  isthmus register scans/ -o out/     all scans of a folder; then open out/report.html\n"
+    "  isthmus pair a.ply b.ply            how does a fit onto b?\n";
+
+constexpr const char* kExitCodes =
+    "Exit codes: 0 all scans hang together (pair: accepted), 3 finished, but scans are unconnected or\n"
+    "unreadable (pair: not accepted), 2 wrong usage or configuration, 1 failure, 130 or 143 stopped by Ctrl-C or\n"
+    "a signal (the same command goes on from there). Messages go to standard error.";
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(kAbout, "isthmus");
+  app.set_version_flag("--version", fmt::format("isthmus {}", isthmus::kVersion), "Show the version");
+  app.set_help_flag("-h,--help", "Show this help; 'isthmus COMMAND --help' shows a command's");
+  app.footer(kExitCodes);
+  app.require_subcommand(1);
+  int exit_code = isthmus::cli::kSuccess;
+  isthmus::cli::add_register(app, exit_code);
+  isthmus::cli::add_run(app, exit_code);
+  isthmus::cli::add_pair(app, exit_code);
+  isthmus::cli::add_inspect(app, exit_code);
+  isthmus::cli::add_simulate(app, exit_code);
+  isthmus::cli::add_evaluate(app, exit_code);
+  isthmus::cli::add_config(app, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const bool asked_for_help = app.exit(error) == 0;
+    return asked_for_help ? isthmus::cli::kSuccess : isthmus::cli::kUsage;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "isthmus: internal failure: {}\n", error.what());
+    return isthmus::cli::kFailure;
+  }
+  return exit_code;
+}

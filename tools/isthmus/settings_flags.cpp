@@ -1,0 +1,47 @@
+#include "settings_flags.h"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+namespace isthmus::cli {
+
+void SettingsFlags::add_config(CLI::App& command) {
+  command
+      .add_option("-c,--config", configs, "Configuration file (YAML) or built-in profile; may be given several times")
+      ->type_name("FILE")
+      ->take_all();
+}
+
+void SettingsFlags::add_overrides(CLI::App& command) {
+  command
+      .add_option("--set", assignments, "One setting, such as sampling.voxel_m=0.1; 'isthmus config default' lists all")
+      ->type_name("KEY=VALUE")
+      ->take_all()
+      ->allow_extra_args(false);
+  command.add_option("--threads", threads, "Threads that compute at the same time (default: one a core)")
+      ->type_name("N");
+  command.add_option("--memory", memory_gb, "Memory for scans and pairs in work, GB (default: half of the machine's)")
+      ->type_name("GB");
+}
+
+void SettingsFlags::add_store(CLI::App& command) {
+  command.add_option("--store", store, "Folder that keeps what was computed; several outputs may share one")
+      ->type_name("DIR");
+}
+
+Result<void> SettingsFlags::apply(pipelines::Settings& settings) const {
+  for (const std::string& config : configs) {
+    if (const Result<void> done = pipelines::apply_config(settings, config); !done) return done;
+  }
+  std::vector<std::string> all = assignments;
+  if (!threads.empty()) all.push_back("run.threads=" + threads);
+  if (!memory_gb.empty()) all.push_back("run.memory_gb=" + memory_gb);
+  if (const Result<void> done = pipelines::apply_assignments(settings, all); !done) return done;
+  if (!store.empty()) {
+    settings.run.store = store;
+    settings.origins["run.store"] = "--store";
+  }
+  return {};
+}
+
+}  // namespace isthmus::cli

@@ -1,0 +1,121 @@
+#include "congruent/bases.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace isthmus::congruent {
+namespace {
+
+constexpr double kNearestToEnd = 0.1;       // a crossing nearer to an end says little about that end
+constexpr double kSmallestSine = 0.17;      // diagonals within 10 degrees of each other cross anywhere
+constexpr int kTriangleDraws = 60;          // pairs (b, c) drawn for a first point
+constexpr int kAttempts = 8;                // first points drawn
+constexpr std::size_t kFourthDraws = 1500;  // points looked at for the fourth corner
+constexpr double kShortestSide = 0.15;      // of the width: shorter sides say little
+constexpr double kFlatWeight = 0.15;        // what a base on one plane is worth beside one on three orthogonal ones
+
+using Quad = std::array<std::uint32_t, 4>;
+
+// Where the lines ab and cd come nearest to each other (Ericson 2005, Real-Time Collision Detection, 5.1.9).
+std::optional<Base> crossing(std::span<const Eigen::Vector3f> points, const Quad& q) {
+  const Eigen::Vector3d a = points[q[0]].cast<double>(), c = points[q[2]].cast<double>();
+  const Eigen::Vector3d ab = points[q[1]].cast<double>() - a, cd = points[q[3]].cast<double>() - c;
+  const double uu = ab.squaredNorm(), vv = cd.squaredNorm(), uv = ab.dot(cd);
+  const double sq_cross = uu * vv - uv * uv;
+  if (!(sq_cross > kSmallestSine * kSmallestSine * uu * vv)) return std::nullopt;
+  const Eigen::Vector3d ca = a - c;
+  const double ud = ab.dot(ca), vd = cd.dot(ca);
+  Base base{.points = q, .r1 = (uv * vd - vv * ud) / sq_cross, .r2 = (uu * vd - uv * ud) / sq_cross};
+  const auto inside = [](double r) { return r >= kNearestToEnd && r <= 1 - kNearestToEnd; };
+  if (!inside(base.r1) || !inside(base.r2)) return std::nullopt;
+  base.gap_m = (ca + base.r1 * ab - base.r2 * cd).norm();
+  base.length1_m = std::sqrt(uu);
+  base.length2_m = std::sqrt(vv);
+  base.cos_angle = uv / (base.length1_m * base.length2_m);
+  return base;
+}
+
+double area_of(const Base& base) {
+  return 0.5 * base.length1_m * base.length2_m * std::sqrt(std::max(0.0, 1 - base.cos_angle * base.cos_angle));
+}
+
+// Volume spanned by three unit normals: 1 when they are orthogonal, 0 when they lie in one plane.
+double spread(const LocalCloud& cloud, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  if (cloud.normals.empty()) return 0;
+  return std::abs(static_cast<double>(cloud.normals[a].dot(cloud.normals[b].cross(cloud.normals[c]))));
+}
+
+double spread(const LocalCloud& cloud, const Quad& q) {
+  return std::max({spread(cloud, q[0], q[1], q[2]), spread(cloud, q[0], q[1], q[3]), spread(cloud, q[0], q[2], q[3]),
+                   spread(cloud, q[1], q[2], q[3])});
+}
+
+bool side_fits(const LocalCloud& cloud, std::uint32_t i, std::uint32_t j, double width_m) {
+  const double side = static_cast<double>((cloud.points[i] - cloud.points[j]).norm());
+  return side <= width_m && side >= kShortestSide * width_m;
+}
+
+struct Triangle {
+  std::uint32_t a = 0, b = 0, c = 0;
+  double worth = 0;
+};
+
+Triangle draw_triangle(const LocalCloud& cloud, double width_m, Rng& rng) {
+  const auto draw = [&] { return static_cast<std::uint32_t>(rng.below(cloud.points.size())); };
+  Triangle best{.a = draw()};
+  for (int i = 0; i < kTriangleDraws; ++i) {
+    const std::uint32_t b = draw(), c = draw();
+    if (!side_fits(cloud, best.a, b, width_m) || !side_fits(cloud, best.a, c, width_m) ||
+        !side_fits(cloud, b, c, width_m))
+      continue;
+    const Eigen::Vector3f ab = cloud.points[b] - cloud.points[best.a], ac = cloud.points[c] - cloud.points[best.a];
+    const double worth = static_cast<double>(ab.cross(ac).norm()) * (kFlatWeight + spread(cloud, best.a, b, c));
+    if (worth > best.worth) best.b = b, best.c = c, best.worth = worth;
+  }
+  return best;
+}
+
+// The best fourth corner to a triangle; looks at all points, or at an evenly spaced share of a large cloud.
+std::optional<Base> with_fourth_corner(const LocalCloud& cloud, const Triangle& t, const BaseWish& wish, Rng& rng) {
+  const Eigen::Vector3f origin = cloud.points[t.a];
+  const Eigen::Vector3f normal = (cloud.points[t.b] - origin).cross(cloud.points[t.c] - origin).normalized();
+  const std::size_t step = 1 + (cloud.points.size() - 1) / kFourthDraws;
+  std::optional<Base> best;
+  double best_worth = 0;
+  for (std::size_t i = rng.below(step); i < cloud.points.size(); i += step) {
+    if (std::abs(static_cast<double>(normal.dot(cloud.points[i] - origin))) > 2 * wish.coplanarity_m) continue;
+    const auto d = static_cast<std::uint32_t>(i);
+    if (!side_fits(cloud, t.a, d, wish.width_m) || !side_fits(cloud, t.b, d, wish.width_m) ||
+        !side_fits(cloud, t.c, d, wish.width_m))
+      continue;
+    const auto base = base_of(cloud.points, {t.a, t.b, t.c, d});
+    if (!base || base->gap_m > wish.coplanarity_m) continue;
+    const double worth = area_of(*base) * (kFlatWeight + spread(cloud, base->points));
+    if (worth > best_worth) best = base, best_worth = worth;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::optional<Base> base_of(std::span<const Eigen::Vector3f> points, const Quad& q) {
+  std::optional<Base> best;
+  for (const Quad& pairing : {q, Quad{q[0], q[2], q[1], q[3]}, Quad{q[0], q[3], q[1], q[2]}}) {
+    const auto base = crossing(points, pairing);
+    if (base && (!best || base->gap_m < best->gap_m)) best = base;
+  }
+  return best;
+}
+
+std::optional<Base> select_base(const LocalCloud& source, const BaseWish& wish, Rng& rng) {
+  if (source.points.size() < 4 || !(wish.width_m > 0)) return std::nullopt;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const Triangle triangle = draw_triangle(source, wish.width_m, rng);
+    if (!(triangle.worth > 0)) continue;
+    if (const auto base = with_fourth_corner(source, triangle, wish, rng)) return base;
+  }
+  return std::nullopt;
+}
+
+}  // namespace isthmus::congruent

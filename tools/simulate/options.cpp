@@ -23,10 +23,12 @@ const config::OptionTable<SimulateOptions>& simulate_options_table() {
       row.min = low;
       row.max = high;
     };
-    constexpr double kNoLimit = std::numeric_limits<double>::max();
+    constexpr double kNoLimit = std::numeric_limits<int>::max();
     add("scene", &O::scene, "", "The kind of place.", "the kinds of survey method.md was measured on").choices =
         sim::scene_names();
     add("output", &O::output, "", "Folder for the scans and the truth.", "-").affects_results = false;
+    add("format", &O::format, "", "File format of the scans.", "PLY is read by everything").choices = {"ply", "pcd",
+                                                                                                       "xyz"};
     range(add("stations", &O::stations, "", "Number of stations; the place grows with it.", "a morning's work"), 1,
           2000);
     range(add("resolution_deg", &O::resolution_deg, "deg",

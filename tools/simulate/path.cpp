@@ -10,16 +10,14 @@ constexpr double kStep_m = 0.25;
 constexpr double kPi = std::numbers::pi;
 }  // namespace
 
-Path::Path(double length_m, double heading_rad, const std::function<double(double)>& curvature) : length_m_(length_m) {
+Path::Path(double length_m, const std::function<double(double)>& heading_rad) : length_m_(length_m) {
   Vector2d p = Vector2d::Zero();
-  double heading = heading_rad;
   const int steps = static_cast<int>(std::ceil(length_m / kStep_m));
   for (int k = 0; k <= steps; ++k) {
     points_.push_back(p);
-    headings_.push_back(heading);
-    const double turn = kStep_m * curvature((k + 0.5) * kStep_m), middle = heading + turn / 2;
+    headings_.push_back(heading_rad(k * kStep_m));
+    const double middle = heading_rad((k + 0.5) * kStep_m);
     p += kStep_m * Vector2d(std::cos(middle), std::sin(middle));
-    heading += turn;
   }
 }
 
@@ -39,26 +37,29 @@ Vector2d Path::at(double s_m, double t_m) const {
 }
 
 Path winding_path(double length_m, double smallest_radius_m, Rng& rng) {
-  const double first = rng.uniform(0.6, 1.0) / smallest_radius_m, second = rng.uniform(0.0, 0.35) / smallest_radius_m;
+  // Two waves of heading; the steepest sum of their slopes is the sharpest bend.
   const double wavelength = rng.uniform(4, 7) * smallest_radius_m, phase = rng.uniform(0, 2 * kPi);
-  return Path(length_m, rng.uniform(0, 2 * kPi), [=](double s) {
-    return first * std::sin(2 * kPi * s / wavelength + phase) * 0.7 +
-           second * std::sin(2 * kPi * s / (0.37 * wavelength));
+  const double long_share = rng.uniform(0.5, 0.7), short_share = rng.uniform(0.0, 0.3), ratio = 0.37;
+  const double reach = wavelength / (2 * kPi * smallest_radius_m), start = rng.uniform(0, 2 * kPi);
+  return Path(length_m, [=](double s) {
+    const double turn = 2 * kPi * s / wavelength;
+    return start + reach * (long_share * std::sin(turn + phase) + ratio * short_share * std::sin(turn / ratio));
   });
 }
 
 Path around_a_block(double length_m, double corner_radius_m, Rng& rng) {
   const double corner = corner_radius_m * kPi / 2, sides = (length_m - 4 * corner) / 2;
   const double long_side = sides * rng.uniform(0.5, 0.6), short_side = sides - long_side;
-  const double start = long_side / 2;  // begin in the middle of a side
-  return Path(length_m, rng.uniform(0, 2 * kPi), [=](double s) {
-    double along = std::fmod(s + start, length_m);
-    for (const double side : {long_side, short_side, long_side, short_side}) {
-      if (along < side) return 0.0;
-      if (along < side + corner) return 1 / corner_radius_m;
+  const double begin = long_side / 2, start = rng.uniform(0, 2 * kPi);  // begin in the middle of a side
+  return Path(length_m, [=](double s) {
+    double along = s + begin, heading = start;
+    for (const double side : {long_side, short_side, long_side, short_side, long_side}) {
+      if (along < side) return heading;
+      if (along < side + corner) return heading + (along - side) / corner_radius_m;
       along -= side + corner;
+      heading += kPi / 2;
     }
-    return 0.0;
+    return heading;
   });
 }
 

@@ -11,8 +11,8 @@ namespace isthmus::sim {
 
 class Path {
  public:
-  /// Integrates `curvature` (1/m, positive turns left) over `length_m` from the origin in direction `heading_rad`.
-  Path(double length_m, double heading_rad, const std::function<double(double s_m)>& curvature);
+  /// From the origin, in direction heading_rad(s) at every s from 0 to length_m.
+  Path(double length_m, const std::function<double(double s_m)>& heading_rad);
   /// Where the path is at s (extended straight beyond its ends), moved t to the left.
   [[nodiscard]] Vector2d at(double s_m, double t_m = 0) const;
   [[nodiscard]] double heading_rad(double s_m) const;

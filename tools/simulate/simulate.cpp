@@ -8,8 +8,8 @@
 
 #include "base/atomic_file.h"
 #include "base/rng.h"
+#include "io/scan_writer.h"
 #include "simulate/movers.h"
-#include "simulate/ply_writer.h"
 #include "simulate/scanner.h"
 #include "simulate/scene.h"
 #include "simulate/stations.h"
@@ -181,9 +181,9 @@ Result<SimulationSummary> simulate(const SimulateOptions& o, const SimulationPro
     Result<void> status;
     const io::PointChunk points = scan_place(place, station, o, scan_seed, status);
     if (!status) return tl::unexpected(status.error());
-    SimulatedScan scan{fmt::format("scan_{:03}.ply", k), static_cast<std::uint64_t>(grid.rows) * grid.columns,
+    SimulatedScan scan{fmt::format("scan_{:03}.{}", k, o.format), static_cast<std::uint64_t>(grid.rows) * grid.columns,
                        points.points.size(), is_foreign[k]};
-    if (const auto ok = sim::write_ply(folder / scan.name, points); !ok) return tl::unexpected(ok.error());
+    if (const auto ok = io::write_scan(folder / scan.name, points); !ok) return tl::unexpected(ok.error());
     if (is_foreign[k]) {
       foreign_names += scan.name + "\n";
     } else {

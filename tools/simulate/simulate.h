@@ -1,6 +1,6 @@
 // A survey that never happened: a made-up place, a made-up scanner, and the exact truth about both.
 //
-// Writes scan_000.ply ... (binary float x y z intensity, each in the scanner's own frame with the station at the
+// Writes scan_000.ply ... (x y z intensity, each in the scanner's own frame with the station at the
 // origin), poses.gt.txt (name r00 r01 r02 tx ... tz, scan -> common, metres) and, when asked, foreign.txt: scans of
 // other places. Theory, sources and examples: docs/simulate.md.
 #pragma once
@@ -20,6 +20,7 @@ namespace isthmus {
 struct SimulateOptions {
   std::string scene = "office";
   std::string output;
+  std::string format = "ply";
   int stations = 10;
   double resolution_deg = 0.1;
   int seed = 1;

@@ -22,7 +22,8 @@ constexpr std::size_t kMaxLabelled = 40;
 /// Scans that were read, by component, then id.
 std::vector<int> matrix_order(const SurveyRecord& record) {
   std::vector<int> ids;
-  for (const Component& component : record.solution.components) ids.insert(ids.end(), component.scans.begin(), component.scans.end());
+  for (const Component& component : record.solution.components)
+    ids.insert(ids.end(), component.scans.begin(), component.scans.end());
   return ids;
 }
 
@@ -55,8 +56,8 @@ std::string bar_chart(const Bars& bars, const std::array<std::string, 3>& axis, 
   constexpr double kWidth = 420, kHeight = 150, kBase = 126, kTop = 14;
   int largest = 1;
   for (const auto& bin : bars.counts) largest = std::max(largest, std::accumulate(bin.begin(), bin.end(), 0));
-  std::string out = fmt::format("<figure><svg class=\"bars\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", kWidth, kHeight,
-                                escaped(caption));
+  std::string out = fmt::format("<figure><svg class=\"bars\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">",
+                                kWidth, kHeight, escaped(caption));
   for (int b = 0; b < kBins; ++b) {
     const double x = 10 + b * 40.0;
     double y = kBase;
@@ -67,13 +68,16 @@ std::string bar_chart(const Bars& bars, const std::array<std::string, 3>& axis, 
       y -= height;
       total += count;
       if (count > 0)
-        fmt::format_to(std::back_inserter(out),
-                       "<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"36\" height=\"{:.1f}\"><title>{} {}</title></rect>",
-                       kStack[k], x, y, height, count, kStack[k]);
+        fmt::format_to(
+            std::back_inserter(out),
+            "<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"36\" height=\"{:.1f}\"><title>{} {}</title></rect>",
+            kStack[k], x, y, height, count, kStack[k]);
     }
-    if (total > 0) fmt::format_to(std::back_inserter(out), "<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", x + 18, y - 3, total);
+    if (total > 0)
+      fmt::format_to(std::back_inserter(out), "<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", x + 18, y - 3, total);
   }
-  fmt::format_to(std::back_inserter(out), "<line class=\"axis\" x1=\"8\" y1=\"{0}\" x2=\"412\" y2=\"{0}\"/>", kBase + 0.5);
+  fmt::format_to(std::back_inserter(out), "<line class=\"axis\" x1=\"8\" y1=\"{0}\" x2=\"412\" y2=\"{0}\"/>",
+                 kBase + 0.5);
   for (int k = 0; k < 3; ++k)
     fmt::format_to(std::back_inserter(out), "<text class=\"tick t{}\" x=\"{}\" y=\"{}\">{}</text>", k, 10 + 200 * k,
                    kHeight - 8, escaped(axis[k]));
@@ -92,26 +96,32 @@ std::string pair_matrix(const SurveyRecord& record) {
   const double size = label + cell * static_cast<double>(n) + 4;
   std::map<int, std::size_t> place;
   for (std::size_t k = 0; k < n; ++k) place[ids[k]] = k;
-  std::string svg = fmt::format("<svg class=\"matrix\" viewBox=\"0 0 {0:.0f} {0:.0f}\" style=\"max-width:{0:.0f}px\" role=\"img\" "
-                                "aria-label=\"Matrix of tried pairs\">", size);
-  const auto square = [&](std::size_t row, std::size_t column, const std::string& css, double opacity, const std::string& title) {
-    fmt::format_to(std::back_inserter(svg),
-                   "<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill-opacity=\"{:.2f}\">"
-                   "<title>{}</title></rect>",
-                   css, label + cell * static_cast<double>(column) + 0.5, label + cell * static_cast<double>(row) + 0.5,
-                   cell - 1, cell - 1, opacity, escaped(title));
+  std::string svg = fmt::format(
+      "<svg class=\"matrix\" viewBox=\"0 0 {0:.0f} {0:.0f}\" style=\"max-width:{0:.0f}px\" role=\"img\" "
+      "aria-label=\"Matrix of tried pairs\">",
+      size);
+  const auto square = [&](std::size_t row, std::size_t column, const std::string& css, double opacity,
+                          const std::string& title) {
+    fmt::format_to(
+        std::back_inserter(svg),
+        "<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill-opacity=\"{:.2f}\">"
+        "<title>{}</title></rect>",
+        css, label + cell * static_cast<double>(column) + 0.5, label + cell * static_cast<double>(row) + 0.5, cell - 1,
+        cell - 1, opacity, escaped(title));
   };
-  fmt::format_to(std::back_inserter(svg), "<rect class=\"sheet\" x=\"{0:.1f}\" y=\"{0:.1f}\" width=\"{1:.1f}\" height=\"{1:.1f}\"/>",
-                 label, cell * static_cast<double>(n));
+  fmt::format_to(std::back_inserter(svg),
+                 "<rect class=\"sheet\" x=\"{0:.1f}\" y=\"{0:.1f}\" width=\"{1:.1f}\" height=\"{1:.1f}\"/>", label,
+                 cell * static_cast<double>(n));
   for (std::size_t k = 0; k < n; ++k) {
     const std::string& name = find_scan(record, ids[k])->name;
     square(k, k, "diagonal", 1.0, name);
     if (!labelled) continue;
     const double at = label + cell * (static_cast<double>(k) + 0.5);
-    fmt::format_to(std::back_inserter(svg), "<text class=\"row\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", label - 6, at + 3.5,
-                   escaped(short_name(name, 13)));
-    fmt::format_to(std::back_inserter(svg), "<text class=\"column\" transform=\"translate({:.1f} {:.1f}) rotate(-90)\">{}</text>",
-                   at + 3.5, label - 6, escaped(short_name(name, 13)));
+    fmt::format_to(std::back_inserter(svg), "<text class=\"row\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", label - 6,
+                   at + 3.5, escaped(short_name(name, 13)));
+    fmt::format_to(std::back_inserter(svg),
+                   "<text class=\"column\" transform=\"translate({:.1f} {:.1f}) rotate(-90)\">{}</text>", at + 3.5,
+                   label - 6, escaped(short_name(name, 13)));
   }
   for (const SolvedLink& l : record.solution.links) {
     const auto a = place.find(l.link.source), b = place.find(l.link.target);
@@ -133,7 +143,8 @@ std::string overlap_histogram(const SurveyRecord& record) {
 std::string residual_histogram(const SurveyRecord& record) {
   const double voxel = record.voxel_m > 0 ? record.voxel_m : 1.0;
   return bar_chart(binned(record, [&](const PairResult& r) { return r.rms_m / voxel; }),
-                   {"0", metres(0.5 * voxel), metres(voxel) + " = 1 voxel"}, "Residual over the overlap (point to plane, rms)");
+                   {"0", metres(0.5 * voxel), metres(voxel) + " = 1 voxel"},
+                   "Residual over the overlap (point to plane, rms)");
 }
 
 std::string stage_times(const SurveyRecord& record) {
@@ -141,8 +152,10 @@ std::string stage_times(const SurveyRecord& record) {
   const auto add = [&](const Seconds& seconds) {
     for (const auto& [stage, value] : seconds) {
       const auto at = std::find_if(sums.begin(), sums.end(), [&](const auto& s) { return s.first == stage; });
-      if (at == sums.end()) sums.emplace_back(stage, value);
-      else at->second += value;
+      if (at == sums.end())
+        sums.emplace_back(stage, value);
+      else
+        at->second += value;
     }
   };
   for (const ScanRecord& scan : record.scans) add(scan.seconds);
@@ -153,8 +166,8 @@ std::string stage_times(const SurveyRecord& record) {
   std::string out = "<table class=\"times\">";
   for (const auto& [stage, value] : sums)
     fmt::format_to(std::back_inserter(out),
-                   "<tr><th>{}</th><td class=\"n\">{}</td><td class=\"bar\"><i style=\"width:{:.1f}%\"></i></td></tr>", escaped(stage),
-                   duration(value), 100.0 * value / largest);
+                   "<tr><th>{}</th><td class=\"n\">{}</td><td class=\"bar\"><i style=\"width:{:.1f}%\"></i></td></tr>",
+                   escaped(stage), duration(value), 100.0 * value / largest);
   return out + "</table>";
 }
 

@@ -1,7 +1,7 @@
 #include "report/csv.h"
 
-#include <cmath>
 #include <fmt/format.h>
+#include <cmath>
 
 namespace isthmus::report {
 
@@ -22,10 +22,14 @@ CsvTable& CsvTable::add(std::string_view field) {
   return *this;
 }
 
-CsvTable& CsvTable::add(double value) { return std::isfinite(value) ? add(fmt::format("{:.9g}", value + 0.0)) : skip(); }
+CsvTable& CsvTable::add(double value) {
+  return std::isfinite(value) ? add(fmt::format("{:.9g}", value + 0.0)) : skip();
+}
 
 // Adding zero turns -0 into 0: the sign of nothing must not show in a diff.
-CsvTable& CsvTable::add_exact(double value) { return std::isfinite(value) ? add(fmt::format("{}", value + 0.0)) : skip(); }
+CsvTable& CsvTable::add_exact(double value) {
+  return std::isfinite(value) ? add(fmt::format("{}", value + 0.0)) : skip();
+}
 
 CsvTable& CsvTable::add(long long value) { return add(fmt::format("{}", value)); }
 

@@ -1,5 +1,5 @@
-// Comma-separated values as in RFC 4180: CRLF is allowed but LF is what surveyors' tools expect; fields with commas, quotes or
-// line breaks are quoted, quotes doubled.
+// Comma-separated values as in RFC 4180: CRLF is allowed but LF is what surveyors' tools expect; fields with commas,
+// quotes or line breaks are quoted, quotes doubled.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ class CsvTable {
  public:
   CsvTable& add(std::string_view field);
   CsvTable& add(const char* field) { return add(std::string_view(field)); }
-  CsvTable& add(double value);  ///< 9 significant digits; empty if not finite
+  CsvTable& add(double value);        ///< 9 significant digits; empty if not finite
   CsvTable& add_exact(double value);  ///< shortest text that reads back as the same number
   CsvTable& add(long long value);
   CsvTable& add(int value) { return add(static_cast<long long>(value)); }

@@ -24,7 +24,9 @@ struct Headline {
 Headline headline(const SurveyCounts& c) {
   if (c.scans == 0) return {"bad", "No scan was found."};
   if (c.failed == c.scans) return {"bad", "No scan could be read."};
-  if (c.in_largest == c.scans) return {"good", c.scans == 1 ? "One scan: there is nothing to join." : fmt::format("All {} scans stand in one survey.", c.scans)};
+  if (c.in_largest == c.scans)
+    return {"good", c.scans == 1 ? "One scan: there is nothing to join."
+                                 : fmt::format("All {} scans stand in one survey.", c.scans)};
   if (c.placed == 0) return {"bad", fmt::format("None of the {} scans could be joined to another.", c.scans)};
   return {"partly", fmt::format("{} of {} scans stand in one survey.", c.in_largest, c.scans)};
 }
@@ -54,7 +56,8 @@ std::string list_of(const std::vector<std::string>& names) {
 std::string missing_sentence(const SurveyRecord& record, const SurveyCounts& c) {
   std::vector<std::string> parts;
   if (c.components > 1)
-    parts.push_back(fmt::format("{} in {} of their own", counted(c.placed - c.in_largest, "scan"), c.components == 2 ? "a part" : "parts"));
+    parts.push_back(fmt::format("{} in {} of their own", counted(c.placed - c.in_largest, "scan"),
+                                c.components == 2 ? "a part" : "parts"));
   if (c.unplaced > 0) parts.push_back(counted(c.unplaced, "scan") + " without any trusted link");
   if (c.failed > 0) parts.push_back(counted(c.failed, "scan") + " that could not be used");
   if (parts.empty() || record.scans.size() < 2) return {};
@@ -63,13 +66,20 @@ std::string missing_sentence(const SurveyRecord& record, const SurveyCounts& c) 
 
 std::string links_sentence(const SurveyRecord& record, const SurveyCounts& c) {
   if (c.pairs == 0) return {};
-  std::string text = fmt::format("Of {} tried, {} {} accepted", counted(c.pairs, "pair"), c.accepted, c.accepted == 1 ? "was" : "were");
+  std::string text = fmt::format("Of {} tried, {} {} accepted", counted(c.pairs, "pair"), c.accepted,
+                                 c.accepted == 1 ? "was" : "were");
   if (c.accepted > 0)
-    text += c.confirmed == c.accepted ? ", every one confirmed by a loop" : fmt::format("; loops confirm {} of them", c.confirmed);
+    text += c.confirmed == c.accepted ? ", every one confirmed by a loop"
+                                      : fmt::format("; loops confirm {} of them", c.confirmed);
   text += ". ";
-  if (c.overruled > 0) text += fmt::format("Loops rejected {} that looked right on {} own. ", counted(c.overruled, "link"), c.overruled == 1 ? "its" : "their");
-  if (c.promoted > 0) text += fmt::format("Loops settled {} that {} ambiguous alone. ", counted(c.promoted, "link"), c.promoted == 1 ? "was" : "were");
-  const std::vector<double> off = of_accepted(record, [](const SolvedLink& l) { return l.after ? l.after->translation_m : 0.0; });
+  if (c.overruled > 0)
+    text += fmt::format("Loops rejected {} that looked right on {} own. ", counted(c.overruled, "link"),
+                        c.overruled == 1 ? "its" : "their");
+  if (c.promoted > 0)
+    text += fmt::format("Loops settled {} that {} ambiguous alone. ", counted(c.promoted, "link"),
+                        c.promoted == 1 ? "was" : "were");
+  const std::vector<double> off =
+      of_accepted(record, [](const SolvedLink& l) { return l.after ? l.after->translation_m : 0.0; });
   if (off.size() >= 2 && c.confirmed > 0)
     text += fmt::format("Links and solved poses agree to {} (median), at worst {}. ", metres(median_of(off)),
                         metres(*std::max_element(off.begin(), off.end())));
@@ -81,9 +91,11 @@ std::string bridges_sentence(const SurveyRecord& record) {
   std::vector<std::string> names;
   for (const SolvedLink& l : record.solution.links)
     if (l.link.result.verdict == Verdict::accepted && !l.in_loop && !l.link.guided)
-      names.push_back(escaped(short_name(find_scan(record, l.link.source)->name, 20) + "–" + short_name(find_scan(record, l.link.target)->name, 20)));
+      names.push_back(escaped(short_name(find_scan(record, l.link.source)->name, 20) + "–" +
+                              short_name(find_scan(record, l.link.target)->name, 20)));
   if (names.empty()) return {};
-  return fmt::format("No loop checks {}: {}.", names.size() == 1 ? "one link that a part hangs on" : "these links", list_of(names));
+  return fmt::format("No loop checks {}: {}.", names.size() == 1 ? "one link that a part hangs on" : "these links",
+                     list_of(names));
 }
 
 std::string tile(const std::string& value, const std::string& label) {
@@ -96,8 +108,10 @@ std::string tiles(const SurveyRecord& record, const SurveyCounts& c) {
   out += tile(fmt::format("{} / {}", c.accepted, c.pairs), "links accepted of pairs tried");
   out += tile(fmt::format("{} / {}", c.confirmed, c.accepted), "links confirmed by a loop");
   if (c.accepted > 0) {
-    out += tile(percent(median_of(of_accepted(record, [](const SolvedLink& l) { return l.link.result.overlap; }))), "median overlap");
-    out += tile(metres(median_of(of_accepted(record, [](const SolvedLink& l) { return l.link.result.rms_m; }))), "median residual");
+    out += tile(percent(median_of(of_accepted(record, [](const SolvedLink& l) { return l.link.result.overlap; }))),
+                "median overlap");
+    out += tile(metres(median_of(of_accepted(record, [](const SolvedLink& l) { return l.link.result.rms_m; }))),
+                "median residual");
   }
   out += tile(metres(record.voxel_m), "voxel");
   if (record.run.seconds > 0) out += tile(duration(record.run.seconds), "running time");
@@ -110,8 +124,11 @@ std::string maps(const SurveyRecord& record) {
     const std::size_t size = record.solution.components[k].scans.size();
     if (size < 2) break;
     const std::string svg = plan_map_svg(record, static_cast<int>(k), k == 0);
-    if (k == 0) out = "<div class=\"card\">" + svg + plan_map_legend() + "</div>";
-    else small += fmt::format("<div class=\"card\"><h3>Part {}: {} scans, in a frame of its own</h3>{}</div>", k, size, svg);
+    if (k == 0)
+      out = "<div class=\"card\">" + svg + plan_map_legend() + "</div>";
+    else
+      small +=
+          fmt::format("<div class=\"card\"><h3>Part {}: {} scans, in a frame of its own</h3>{}</div>", k, size, svg);
   }
   if (out.empty()) return {};
   if (!small.empty()) out += "<div class=\"two\">" + small + "</div>";
@@ -122,19 +139,27 @@ std::string pairs_section(const SurveyRecord& record) {
   const std::string matrix = pair_matrix(record);
   if (matrix.empty()) return {};
   return "<h2>Pairs</h2><div class=\"two\"><div class=\"card\">" + matrix +
-         "<div class=\"legend\"><span class=\"keys\">below the diagonal: <i class=\"swatch square c0\"></i>accepted, by probability "
+         "<div class=\"legend\"><span class=\"keys\">below the diagonal: <i class=\"swatch square c0\"></i>accepted, "
+         "by probability "
          "<i class=\"swatch square ambiguous\"></i>ambiguous <i class=\"swatch square rejected\"></i>rejected "
-         "<i class=\"swatch square failed\"></i>failed</span><span class=\"keys\">above: <i class=\"swatch square overlap\"></i>overlap"
-         "</span></div></div><div class=\"card\">" + overlap_histogram(record) + residual_histogram(record) + "</div></div>";
+         "<i class=\"swatch square failed\"></i>failed</span><span class=\"keys\">above: <i class=\"swatch square "
+         "overlap\"></i>overlap"
+         "</span></div></div><div class=\"card\">" +
+         overlap_histogram(record) + residual_histogram(record) + "</div></div>";
 }
 
 std::string links_section(const SurveyRecord& record, const SurveyCounts& c) {
   if (c.pairs == 0) return {};
-  std::string out = "<h2>Links</h2><div class=\"filters\"><button data-verdict=\"all\" aria-pressed=\"true\">all " + std::to_string(c.pairs) + "</button>";
-  for (const auto& [verdict, n] : {std::pair(Verdict::accepted, c.accepted), std::pair(Verdict::ambiguous, c.ambiguous),
-                                   std::pair(Verdict::rejected, c.rejected), std::pair(Verdict::failed, c.pairs_failed)})
-    if (n > 0) out += fmt::format("<button data-verdict=\"{0}\" aria-pressed=\"false\">{0} {1}</button>", word(verdict), n);
-  return out + "<input id=\"needle\" type=\"search\" placeholder=\"Find a scan or a reason\" aria-label=\"Find\"></div><div class=\"scroll\">" +
+  std::string out = "<h2>Links</h2><div class=\"filters\"><button data-verdict=\"all\" aria-pressed=\"true\">all " +
+                    std::to_string(c.pairs) + "</button>";
+  for (const auto& [verdict, n] :
+       {std::pair(Verdict::accepted, c.accepted), std::pair(Verdict::ambiguous, c.ambiguous),
+        std::pair(Verdict::rejected, c.rejected), std::pair(Verdict::failed, c.pairs_failed)})
+    if (n > 0)
+      out += fmt::format("<button data-verdict=\"{0}\" aria-pressed=\"false\">{0} {1}</button>", word(verdict), n);
+  return out +
+         "<input id=\"needle\" type=\"search\" placeholder=\"Find a scan or a reason\" aria-label=\"Find\"></div><div "
+         "class=\"scroll\">" +
          link_table(record) + "</div>";
 }
 
@@ -153,13 +178,15 @@ std::string run_section(const SurveyRecord& record) {
   const RunRecord& run = record.run;
   std::string facts;
   for (const auto& [name, version] : record.versions) facts += fact(name, version);
-  facts += fact("command", run.command) + fact("started", run.started) + fact("host", run.host) + fact("input", run.input);
+  facts +=
+      fact("command", run.command) + fact("started", run.started) + fact("host", run.host) + fact("input", run.input);
   facts += fact("output", run.output) + fact("store", run.store);
   if (run.threads > 0) facts += fact("threads", std::to_string(run.threads));
   if (run.peak_memory_bytes > 0) facts += fact("peak memory", fmt::format("{} MB", run.peak_memory_bytes >> 20));
   for (const auto& [name, value] : run.more) facts += fact(name, value);
   std::string out = "<h2>The run</h2><div class=\"two\"><div class=\"card\"><table class=\"facts\">" + facts +
-                    "</table></div><div class=\"card\"><h3>Processor time by stage</h3>" + stage_times(record) + "</div></div>";
+                    "</table></div><div class=\"card\"><h3>Processor time by stage</h3>" + stage_times(record) +
+                    "</div></div>";
   if (!record.settings_yaml.empty())
     out += "<details><summary>Settings as used</summary><pre>" + escaped(record.settings_yaml) + "</pre></details>";
   return out;
@@ -171,12 +198,15 @@ std::string html_report(const SurveyRecord& record) {
   const SurveyCounts c = count(record);
   const Headline head = headline(c);
   const std::string title = record.title.empty() ? "survey" : record.title;
-  std::string page = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-                     "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">";
+  std::string page =
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">";
   page += fmt::format("<title>{} – Isthmus</title><style>{}</style></head><body><main>", escaped(title), kPageStyle);
-  page += fmt::format("<header><b>Isthmus</b><span>{}</span><span>{}</span></header>", escaped(title), escaped(record.run.started));
+  page += fmt::format("<header><b>Isthmus</b><span>{}</span><span>{}</span></header>", escaped(title),
+                      escaped(record.run.started));
   page += fmt::format("<h1 class=\"{}\">{}</h1>", head.css, head.text);
-  page += "<p class=\"lead\">" + missing_sentence(record, c) + links_sentence(record, c) + bridges_sentence(record) + "</p>";
+  page += "<p class=\"lead\">" + missing_sentence(record, c) + links_sentence(record, c) + bridges_sentence(record) +
+          "</p>";
   page += tiles(record, c);
   const std::string missing = missing_section(record);
   if (!missing.empty()) page += "<h2>Not joined</h2>" + missing;

@@ -7,8 +7,8 @@
 
 namespace isthmus::report {
 
-/// Verdict first, then the plan map, what is missing and what would join it, matrix, histograms, tables, settings. The page loads
-/// nothing from anywhere; its small script only sorts, filters and recolours.
+/// Verdict first, then the plan map, what is missing and what would join it, matrix, histograms, tables, settings. The
+/// page loads nothing from anywhere; its small script only sorts, filters and recolours.
 std::string html_report(const SurveyRecord& record);
 
 }  // namespace isthmus::report

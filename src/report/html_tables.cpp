@@ -16,7 +16,8 @@ constexpr std::size_t kNameLength = 28;
 std::string name_cell(const SurveyRecord& record, int id) {
   const ScanRecord* scan = find_scan(record, id);
   const std::string name = scan != nullptr ? scan->name : "?";
-  return fmt::format("<td data-v=\"{}\" title=\"{}\">{}</td>", id, escaped(name), escaped(short_name(name, kNameLength)));
+  return fmt::format("<td data-v=\"{}\" title=\"{}\">{}</td>", id, escaped(name),
+                     escaped(short_name(name, kNameLength)));
 }
 
 /// A right-aligned number that sorts by `value`.
@@ -35,8 +36,8 @@ std::string link_row(const SurveyRecord& record, const SolvedLink& l) {
   const PairResult& r = l.link.result;
   std::string row = fmt::format("<tr class=\"{}\" id=\"link-{}-{}\">", word(r.verdict), l.link.source, l.link.target);
   row += name_cell(record, l.link.source) + name_cell(record, l.link.target);
-  row += fmt::format("<td data-v=\"{}\"><b class=\"pill {}\">{}</b></td>", 3 - static_cast<int>(r.verdict), word(r.verdict),
-                     word(r.verdict));
+  row += fmt::format("<td data-v=\"{}\"><b class=\"pill {}\">{}</b></td>", 3 - static_cast<int>(r.verdict),
+                     word(r.verdict), word(r.verdict));
   row += number_cell(r.probability, fmt::format("{:.3f}", r.probability));
   row += r.target_from_source ? number_cell(r.overlap, percent(r.overlap)) + number_cell(r.rms_m, metres(r.rms_m))
                               : empty_cell() + empty_cell();
@@ -56,9 +57,10 @@ std::string header(std::initializer_list<std::pair<const char*, const char*>> co
 std::string advice(const SurveyRecord& record, const SolvedLink* best) {
   if (best == nullptr) return "No pair with the rest was tried. Name one under <code>candidates.groups</code>.";
   const PairResult& r = best->link.result;
-  const std::string source = find_scan(record, best->link.source)->name, target = find_scan(record, best->link.target)->name;
-  std::string text = fmt::format("Nearest to joining it: <b>{}</b> with <b>{}</b>, {}, probability {:.2f}", escaped(source),
-                                 escaped(target), word(r.verdict), r.probability);
+  const std::string source = find_scan(record, best->link.source)->name,
+                    target = find_scan(record, best->link.target)->name;
+  std::string text = fmt::format("Nearest to joining it: <b>{}</b> with <b>{}</b>, {}, probability {:.2f}",
+                                 escaped(source), escaped(target), word(r.verdict), r.probability);
   if (r.target_from_source) text += fmt::format(", overlap {}", percent(r.overlap));
   return text + fmt::format(". {}. Look at it with <code>isthmus pair</code>, or scan once more between the two.",
                             escaped(r.reason));
@@ -105,19 +107,21 @@ std::string scan_table(const SurveyRecord& record) {
   out += "<tbody>";
   for (const ScanRecord& scan : record.scans) {
     const PlacedScan* placed = record.solution.find(scan.id);
-    const auto links = std::count_if(record.solution.links.begin(), record.solution.links.end(), [&](const SolvedLink& l) {
-      return l.link.result.verdict == Verdict::accepted && (l.link.source == scan.id || l.link.target == scan.id);
-    });
+    const auto links =
+        std::count_if(record.solution.links.begin(), record.solution.links.end(), [&](const SolvedLink& l) {
+          return l.link.result.verdict == Verdict::accepted && (l.link.source == scan.id || l.link.target == scan.id);
+        });
     std::string notes = scan.reason;
     for (const std::string& note : scan.notes) notes += (notes.empty() ? "" : "; ") + note;
     fmt::format_to(std::back_inserter(out), "<tr class=\"{}\" id=\"scan-{}\">", word(scan.status), scan.id);
     out += number_cell(scan.id, std::to_string(scan.id));
     out += fmt::format("<td title=\"{}\">{}</td>", escaped(scan.name), escaped(scan.name));
-    out += fmt::format("<td data-v=\"{}\"><b class=\"pill {}\">{}</b></td>", static_cast<int>(scan.status), word(scan.status),
-                       word(scan.status));
+    out += fmt::format("<td data-v=\"{}\"><b class=\"pill {}\">{}</b></td>", static_cast<int>(scan.status),
+                       word(scan.status), word(scan.status));
     out += placed != nullptr ? number_cell(placed->component, std::to_string(placed->component)) : empty_cell();
     out += number_cell(static_cast<double>(links), std::to_string(links));
-    out += placed != nullptr && placed->sigma_m ? number_cell(*placed->sigma_m, metres(*placed->sigma_m)) : empty_cell();
+    out +=
+        placed != nullptr && placed->sigma_m ? number_cell(*placed->sigma_m, metres(*placed->sigma_m)) : empty_cell();
     out += number_cell(static_cast<double>(scan.num_read), large_number(scan.num_read));
     out += number_cell(static_cast<double>(scan.points), large_number(scan.points));
     out += number_cell(scan.spacing_m, metres(scan.spacing_m));

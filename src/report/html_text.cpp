@@ -12,10 +12,12 @@ namespace {
 
 // Finer towards certainty: 0.99 and 0.95 are far apart in the number of wrong links they let through.
 constexpr std::array<double, kNumClasses - 1> kProbabilityBounds{0.99, 0.95, 0.9, 0.7};
-constexpr std::array<const char*, kNumClasses> kProbabilityTexts{"≥ 0.99", "0.95 – 0.99", "0.9 – 0.95", "0.7 – 0.9", "< 0.7"};
+constexpr std::array<const char*, kNumClasses> kProbabilityTexts{"≥ 0.99", "0.95 – 0.99", "0.9 – 0.95", "0.7 – 0.9",
+                                                                 "< 0.7"};
 // In voxels: a residual near half a voxel says no more than the sampling does.
 constexpr std::array<double, kNumClasses - 1> kResidualBounds{0.1, 0.2, 0.3, 0.5};
-constexpr std::array<const char*, kNumClasses> kResidualTexts{"≤ 0.1 voxel", "0.1 – 0.2", "0.2 – 0.3", "0.3 – 0.5", "> 0.5 voxel"};
+constexpr std::array<const char*, kNumClasses> kResidualTexts{"≤ 0.1 voxel", "0.1 – 0.2", "0.2 – 0.3", "0.3 – 0.5",
+                                                              "> 0.5 voxel"};
 
 }  // namespace
 
@@ -23,12 +25,23 @@ std::string escaped(std::string_view text) {
   std::string out;
   out.reserve(text.size());
   for (const char c : text) switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      case '\'': out += "&#39;"; break;
-      default: out += c;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      default:
+        out += c;
     }
   return out;
 }
@@ -48,7 +61,9 @@ std::string degrees(double radians) {
   return deg < 1 ? fmt::format("{:.3f}°", deg) : fmt::format("{:.1f}°", deg);
 }
 
-std::string percent(double share) { return share < 0.0995 ? fmt::format("{:.1f} %", share * 100.0) : fmt::format("{:.0f} %", share * 100.0); }
+std::string percent(double share) {
+  return share < 0.0995 ? fmt::format("{:.1f} %", share * 100.0) : fmt::format("{:.0f} %", share * 100.0);
+}
 
 std::string large_number(std::uint64_t n) {
   if (n >= 1000000000) return fmt::format("{:.2f} billion", static_cast<double>(n) * 1e-9);
@@ -96,13 +111,16 @@ std::string link_title(const SurveyRecord& record, const SolvedLink& link) {
   const PairResult& r = link.link.result;
   const ScanRecord* source = find_scan(record, link.link.source);
   const ScanRecord* target = find_scan(record, link.link.target);
-  std::string text = fmt::format("{} → {}\n{}, probability {:.3f}\noverlap {}, residual {}", source ? source->name : "?",
-                                 target ? target->name : "?", word(r.verdict), r.probability, percent(r.overlap),
-                                 metres(r.rms_m));
+  std::string text =
+      fmt::format("{} → {}\n{}, probability {:.3f}\noverlap {}, residual {}", source ? source->name : "?",
+                  target ? target->name : "?", word(r.verdict), r.probability, percent(r.overlap), metres(r.rms_m));
   if (link.after)
-    text += fmt::format("\noff the solved poses by {}, {}", metres(link.after->translation_m), degrees(link.after->rotation_rad));
-  if (r.verdict == Verdict::accepted) text += link.in_loop ? "\nconfirmed by a loop" : "\nno loop confirms it";
-  else text += "\n" + r.reason;
+    text += fmt::format("\noff the solved poses by {}, {}", metres(link.after->translation_m),
+                        degrees(link.after->rotation_rad));
+  if (r.verdict == Verdict::accepted)
+    text += link.in_loop ? "\nconfirmed by a loop" : "\nno loop confirms it";
+  else
+    text += "\n" + r.reason;
   return text;
 }
 

@@ -10,11 +10,11 @@ namespace isthmus::report {
 
 std::string escaped(std::string_view text);
 
-std::string metres(double value);          ///< "0.42 mm", "12 mm", "1.25 m"
-std::string degrees(double radians);       ///< "0.04°"
-std::string percent(double share);         ///< "31 %"
-std::string large_number(std::uint64_t n); ///< "1.25 million"
-std::string duration(double seconds);      ///< "3 min 20 s"
+std::string metres(double value);           ///< "0.42 mm", "12 mm", "1.25 m"
+std::string degrees(double radians);        ///< "0.04°"
+std::string percent(double share);          ///< "31 %"
+std::string large_number(std::uint64_t n);  ///< "1.25 million"
+std::string duration(double seconds);       ///< "3 min 20 s"
 
 /// "3 scans", "1 scan"
 std::string counted(int n, std::string_view noun);

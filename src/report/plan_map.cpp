@@ -91,8 +91,8 @@ void draw_footprints(std::string& svg, const Layout& layout, const Sheet& sheet)
   svg += "<g class=\"footprints\">";
   const double largest = 0.6 * std::max(sheet.width, sheet.height);
   for (const auto& [id, spot] : layout.spots)
-    fmt::format_to(std::back_inserter(svg), "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"/>", spot.at.x(), spot.at.y(),
-                   std::min(largest, spot.radius_px));
+    fmt::format_to(std::back_inserter(svg), "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"/>", spot.at.x(),
+                   spot.at.y(), std::min(largest, spot.radius_px));
   svg += "</g>";
 }
 
@@ -109,8 +109,9 @@ void draw_links(std::string& svg, const SurveyRecord& record, const Layout& layo
                      "<line class=\"link {} p{} r{}{}\" data-link=\"{}-{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" "
                      "y2=\"{:.1f}\" stroke-width=\"{:.1f}\"><title>{}</title></line>",
                      word(r.verdict), probability_class(r.probability), residual_class(r.rms_m, record.voxel_m),
-                     l.in_loop || verdict != Verdict::accepted ? "" : " bridge", l.link.source, l.link.target, a->second.at.x(),
-                     a->second.at.y(), b->second.at.x(), b->second.at.y(), width, escaped(link_title(record, l)));
+                     l.in_loop || verdict != Verdict::accepted ? "" : " bridge", l.link.source, l.link.target,
+                     a->second.at.x(), a->second.at.y(), b->second.at.x(), b->second.at.y(), width,
+                     escaped(link_title(record, l)));
     }
   };
   draw(Verdict::rejected);
@@ -161,7 +162,8 @@ std::string station_title(const ScanRecord& scan, const PlacedScan& placed, bool
   return title;
 }
 
-void draw_stations(std::string& svg, const SurveyRecord& record, const Component& component, const Layout& layout, bool large) {
+void draw_stations(std::string& svg, const SurveyRecord& record, const Component& component, const Layout& layout,
+                   bool large) {
   const bool many = component.scans.size() > kManyScans;
   const double radius = std::clamp(0.3 * typical_gap_px(layout), 2.5, large ? 7.5 : 6.0);
   const double font_px = many ? 9.5 : 12;
@@ -170,21 +172,22 @@ void draw_stations(std::string& svg, const SurveyRecord& record, const Component
   for (const auto& [id, spot] : layout.spots) {
     const ScanRecord& scan = *find_scan(record, id);
     const bool anchor = id == component.anchor;
-    fmt::format_to(std::back_inserter(svg), "<g class=\"station{}\" data-scan=\"{}\"><title>{}</title>", anchor ? " anchor" : "", id,
-                   escaped(station_title(scan, *record.solution.find(id), anchor)));
+    fmt::format_to(std::back_inserter(svg), "<g class=\"station{}\" data-scan=\"{}\"><title>{}</title>",
+                   anchor ? " anchor" : "", id, escaped(station_title(scan, *record.solution.find(id), anchor)));
     if (anchor)
-      fmt::format_to(std::back_inserter(svg), "<circle class=\"ring\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"/>", spot.at.x(),
-                     spot.at.y(), radius + 4);
-    fmt::format_to(std::back_inserter(svg), "<circle class=\"dot\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"/>", spot.at.x(),
-                   spot.at.y(), radius);
+      fmt::format_to(std::back_inserter(svg), "<circle class=\"ring\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"/>",
+                     spot.at.x(), spot.at.y(), radius + 4);
+    fmt::format_to(std::back_inserter(svg), "<circle class=\"dot\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"/>",
+                   spot.at.x(), spot.at.y(), radius);
     svg += "</g>";
     room.keep_free(spot.at, radius);
   }
   for (const auto& [id, spot] : layout.spots) {
     const std::string label = many ? fmt::format("{}", id) : short_name(find_scan(record, id)->name, 14);
     const double length = LabelRoom::length(label.size(), font_px), off = radius + 4;
-    for (const Eigen::Vector2d& shift : {Eigen::Vector2d(off, -radius), Eigen::Vector2d(-off - length, -radius),
-                                         Eigen::Vector2d(off, radius + font_px), Eigen::Vector2d(-off - length, radius + font_px)})
+    for (const Eigen::Vector2d& shift :
+         {Eigen::Vector2d(off, -radius), Eigen::Vector2d(-off - length, -radius),
+          Eigen::Vector2d(off, radius + font_px), Eigen::Vector2d(-off - length, radius + font_px)})
       if (const Eigen::Vector2d corner = spot.at + shift; room.take(corner, length, font_px)) {
         fmt::format_to(std::back_inserter(svg), "<text class=\"label\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", corner.x(),
                        corner.y(), escaped(label));
@@ -202,7 +205,8 @@ void draw_scale(std::string& svg, const Layout& layout, const Sheet& sheet) {
   const double x = 18, y = sheet.height - 18, length = length_m * layout.px_per_m;
   const std::string text = length_m < 0.01 ? fmt::format("{:g} mm", length_m * 1e3) : fmt::format("{:g} m", length_m);
   fmt::format_to(std::back_inserter(svg),
-                 "<g class=\"scale\"><path d=\"M{:.1f} {:.1f}v-6m0 6h{:.1f}m0 0v-6\"/><text x=\"{:.1f}\" y=\"{:.1f}\">{}</text></g>",
+                 "<g class=\"scale\"><path d=\"M{:.1f} {:.1f}v-6m0 6h{:.1f}m0 0v-6\"/><text x=\"{:.1f}\" "
+                 "y=\"{:.1f}\">{}</text></g>",
                  x, y, length, x + length + 8, y + 1, text);
 }
 
@@ -213,8 +217,8 @@ std::string plan_map_svg(const SurveyRecord& record, int component, bool large) 
   const Sheet& sheet = large ? kLarge : kSmall;
   const Layout layout = laid_out(record, part, sheet);
   std::string svg = fmt::format(
-      "<svg class=\"plan\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"Plan of part {} with {} stations\">", sheet.width,
-      sheet.height, component, part.scans.size());
+      "<svg class=\"plan\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"Plan of part {} with {} stations\">",
+      sheet.width, sheet.height, component, part.scans.size());
   draw_footprints(svg, layout, sheet);
   draw_links(svg, record, layout, large);
   draw_stations(svg, record, part, layout, large);
@@ -223,18 +227,22 @@ std::string plan_map_svg(const SurveyRecord& record, int component, bool large) 
 }
 
 std::string plan_map_legend() {
-  std::string out = "<div class=\"legend\"><span class=\"switch\">Colour links by "
-                    "<label><input type=\"radio\" name=\"hue\" value=\"p\" checked> probability</label>"
-                    "<label><input type=\"radio\" name=\"hue\" value=\"r\"> residual</label></span><span class=\"keys by-p\">";
+  std::string out =
+      "<div class=\"legend\"><span class=\"switch\">Colour links by "
+      "<label><input type=\"radio\" name=\"hue\" value=\"p\" checked> probability</label>"
+      "<label><input type=\"radio\" name=\"hue\" value=\"r\"> residual</label></span><span class=\"keys by-p\">";
   for (int c = 0; c < kNumClasses; ++c) out += fmt::format("<i class=\"swatch c{}\"></i>{} ", c, probability_bound(c));
   out += "</span><span class=\"keys by-r\">";
   for (int c = 0; c < kNumClasses; ++c) out += fmt::format("<i class=\"swatch c{}\"></i>{} ", c, residual_bound(c));
   return out +
-         "</span><span class=\"keys\"><svg class=\"key\" viewBox=\"0 0 34 10\"><line class=\"link ambiguous p3\" x1=\"1\" y1=\"5\" "
+         "</span><span class=\"keys\"><svg class=\"key\" viewBox=\"0 0 34 10\"><line class=\"link ambiguous p3\" "
+         "x1=\"1\" y1=\"5\" "
          "x2=\"33\" y2=\"5\" stroke-width=\"3\"/></svg>ambiguous "
-         "<svg class=\"key\" viewBox=\"0 0 34 10\"><line class=\"link accepted bridge p0\" x1=\"1\" y1=\"5\" x2=\"33\" y2=\"5\" "
+         "<svg class=\"key\" viewBox=\"0 0 34 10\"><line class=\"link accepted bridge p0\" x1=\"1\" y1=\"5\" x2=\"33\" "
+         "y2=\"5\" "
          "stroke-width=\"3\"/></svg>no loop confirms it "
-         "<svg class=\"key round\" viewBox=\"0 0 24 24\"><g class=\"station anchor\"><circle class=\"ring\" cx=\"12\" cy=\"12\" "
+         "<svg class=\"key round\" viewBox=\"0 0 24 24\"><g class=\"station anchor\"><circle class=\"ring\" cx=\"12\" "
+         "cy=\"12\" "
          "r=\"10\"/><circle class=\"dot\" cx=\"12\" cy=\"12\" r=\"6\"/></g></svg>anchor; width: overlap</span>"
          "<label class=\"switch\"><input type=\"checkbox\" id=\"show-rejected\"> show rejected links</label></div>";
 }

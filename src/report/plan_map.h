@@ -7,8 +7,9 @@
 
 namespace isthmus::report {
 
-/// Stations seen from above (or on the plane in which they spread most, when they are not level), footprints as faint discs, links
-/// coloured by probability or residual, dashed when ambiguous. `large` for the main map, small ones for lesser components.
+/// Stations seen from above (or on the plane in which they spread most, when they are not level), footprints as faint
+/// discs, links coloured by probability or residual, dashed when ambiguous. `large` for the main map, small ones for
+/// lesser components.
 std::string plan_map_svg(const SurveyRecord& record, int component, bool large);
 
 /// Legend and switches that belong to all maps.

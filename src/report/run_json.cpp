@@ -8,11 +8,20 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json counts_json(const SurveyCounts& c) {
-  return {{"scans", c.scans},       {"placed", c.placed},       {"unplaced", c.unplaced},
-          {"failed", c.failed},     {"components", c.components}, {"largest_component", c.in_largest},
-          {"pairs", c.pairs},       {"accepted", c.accepted},   {"ambiguous", c.ambiguous},
-          {"rejected", c.rejected}, {"pairs_failed", c.pairs_failed}, {"promoted_by_loops", c.promoted},
-          {"rejected_by_loops", c.overruled}, {"confirmed_by_loops", c.confirmed}};
+  return {{"scans", c.scans},
+          {"placed", c.placed},
+          {"unplaced", c.unplaced},
+          {"failed", c.failed},
+          {"components", c.components},
+          {"largest_component", c.in_largest},
+          {"pairs", c.pairs},
+          {"accepted", c.accepted},
+          {"ambiguous", c.ambiguous},
+          {"rejected", c.rejected},
+          {"pairs_failed", c.pairs_failed},
+          {"promoted_by_loops", c.promoted},
+          {"rejected_by_loops", c.overruled},
+          {"confirmed_by_loops", c.confirmed}};
 }
 
 Json components_json(const SurveyRecord& record) {
@@ -26,9 +35,9 @@ Json components_json(const SurveyRecord& record) {
 }
 
 Json run_section(const RunRecord& run) {
-  Json out = {{"command", run.command}, {"started", run.started},   {"host", run.host},
-              {"input", run.input},     {"output", run.output},     {"store", run.store},
-              {"threads", run.threads}, {"seconds", run.seconds},   {"peak_memory_bytes", run.peak_memory_bytes},
+  Json out = {{"command", run.command},    {"started", run.started}, {"host", run.host},
+              {"input", run.input},        {"output", run.output},   {"store", run.store},
+              {"threads", run.threads},    {"seconds", run.seconds}, {"peak_memory_bytes", run.peak_memory_bytes},
               {"exit_code", run.exit_code}};
   for (const auto& [name, value] : run.more) out[name] = value;
   return out;

@@ -13,18 +13,21 @@ std::string unplaced_reason(const SurveyRecord& record, int id) {
   if (best == nullptr) return "no pair with it was tried";
   const int other = best->link.source == id ? best->link.target : best->link.source;
   const ScanRecord* partner = find_scan(record, other);
-  return fmt::format("no accepted link; nearest was {} with {} ({}, probability {:.2f})", word(best->link.result.verdict),
-                     partner != nullptr ? partner->name : std::to_string(other), best->link.result.reason,
-                     best->link.result.probability);
+  return fmt::format("no accepted link; nearest was {} with {} ({}, probability {:.2f})",
+                     word(best->link.result.verdict), partner != nullptr ? partner->name : std::to_string(other),
+                     best->link.result.reason, best->link.result.probability);
 }
 
 }  // namespace
 
 const char* word(ScanStatus status) {
   switch (status) {
-    case ScanStatus::placed: return "placed";
-    case ScanStatus::unplaced: return "unplaced";
-    case ScanStatus::failed: return "failed";
+    case ScanStatus::placed:
+      return "placed";
+    case ScanStatus::unplaced:
+      return "unplaced";
+    case ScanStatus::failed:
+      return "failed";
   }
   return "unknown";
 }
@@ -33,9 +36,12 @@ const char* word(Verdict verdict) { return to_string(verdict); }
 
 const char* word(StationKind kind) {
   switch (kind) {
-    case StationKind::unknown: return "unknown";
-    case StationKind::origin: return "origin";
-    case StationKind::estimated: return "estimated";
+    case StationKind::unknown:
+      return "unknown";
+    case StationKind::origin:
+      return "origin";
+    case StationKind::estimated:
+      return "estimated";
   }
   return "unknown";
 }

@@ -21,12 +21,12 @@ enum class ScanStatus : std::uint8_t {
 using Seconds = std::vector<std::pair<std::string, double>>;  ///< by stage, in the order of work
 
 struct ScanRecord {
-  int id = 0;                ///< vertex id
-  std::string name;          ///< io::ScanRef::name
+  int id = 0;        ///< vertex id
+  std::string name;  ///< io::ScanRef::name
   ScanStatus status = ScanStatus::failed;
   std::string reason = "not computed";  ///< why it failed or is unplaced; empty when placed
-  std::string format;        ///< "ply", ...
-  std::uint64_t points = 0;  ///< after voxel sampling
+  std::string format;                   ///< "ply", ...
+  std::uint64_t points = 0;             ///< after voxel sampling
   std::uint64_t num_read = 0;
   std::uint64_t num_dropped = 0;
   double voxel_m = 0;
@@ -56,18 +56,18 @@ struct RunRecord {
 };
 
 struct SurveyRecord {
-  std::string title;               ///< the input folder's name, for the report
+  std::string title;  ///< the input folder's name, for the report
   double voxel_m = 0;
-  std::vector<ScanRecord> scans;   ///< ascending ids, failed ones too
-  Solution solution;               ///< every pair tried is in solution.links
-  std::string settings_yaml;       ///< as used
+  std::vector<ScanRecord> scans;                              ///< ascending ids, failed ones too
+  Solution solution;                                          ///< every pair tried is in solution.links
+  std::string settings_yaml;                                  ///< as used
   std::vector<std::pair<std::string, std::string>> versions;  ///< name, version; isthmus first
   std::vector<std::string> warnings;
   RunRecord run;
 };
 
-/// Fills status and reason of every scan from the solution; unplaced ones learn which link came nearest to holding them. A scan
-/// that the solution does not know has failed and keeps the reason the caller gave it.
+/// Fills status and reason of every scan from the solution; unplaced ones learn which link came nearest to holding
+/// them. A scan that the solution does not know has failed and keeps the reason the caller gave it.
 void judge_scans(SurveyRecord& record);
 
 const char* word(ScanStatus status);  ///< "placed", "unplaced", "failed"
@@ -79,7 +79,8 @@ const ScanRecord* find_scan(const SurveyRecord& record, int id);
 /// The id's component, or nullopt for failed scans.
 std::optional<int> component_of(const SurveyRecord& record, int id);
 
-/// Pose of a placed scan in its own file's coordinates: component_from_scan = (anchor's local origin) * component_from_local *
+/// Pose of a placed scan in its own file's coordinates: component_from_scan = (anchor's local origin) *
+/// component_from_local *
 /// (-local origin). The component's frame is the anchor's scan frame, so the anchor has the identity.
 Transform component_from_scan(const SurveyRecord& record, int id);
 

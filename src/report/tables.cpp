@@ -20,12 +20,14 @@ std::string joined(const std::vector<std::string>& parts) {
 }
 
 int accepted_links(const SurveyRecord& record, int id) {
-  return static_cast<int>(std::count_if(record.solution.links.begin(), record.solution.links.end(), [&](const SolvedLink& l) {
-    return l.link.result.verdict == Verdict::accepted && (l.link.source == id || l.link.target == id);
-  }));
+  return static_cast<int>(
+      std::count_if(record.solution.links.begin(), record.solution.links.end(), [&](const SolvedLink& l) {
+        return l.link.result.verdict == Verdict::accepted && (l.link.source == id || l.link.target == id);
+      }));
 }
 
-/// Names in the order in which they first appear: evidence terms come in a fixed order per link, but a link may have fewer.
+/// Names in the order in which they first appear: evidence terms come in a fixed order per link, but a link may have
+/// fewer.
 template <class Terms>
 std::vector<std::string> names_of(const SurveyRecord& record, Terms terms) {
   std::vector<std::string> names;
@@ -35,19 +37,24 @@ std::vector<std::string> names_of(const SurveyRecord& record, Terms terms) {
   return names;
 }
 
-void add_terms(CsvTable& csv, const std::vector<std::string>& names, const std::vector<std::pair<std::string, double>>& terms) {
+void add_terms(CsvTable& csv, const std::vector<std::string>& names,
+               const std::vector<std::pair<std::string, double>>& terms) {
   for (const std::string& name : names) {
     const auto term = std::find_if(terms.begin(), terms.end(), [&](const auto& t) { return t.first == name; });
-    if (term == terms.end()) csv.skip();
-    else csv.add(term->second);
+    if (term == terms.end())
+      csv.skip();
+    else
+      csv.add(term->second);
   }
 }
 
 void add_transform(CsvTable& csv, const std::optional<Transform>& t) {
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 4; ++column) {
-      if (t) csv.add_exact((*t)(row, column));
-      else csv.skip();
+      if (t)
+        csv.add_exact((*t)(row, column));
+      else
+        csv.skip();
     }
 }
 
@@ -58,21 +65,26 @@ const auto& counts_of(const PairResult& r) { return r.counts; }
 
 std::string scans_csv(const SurveyRecord& record) {
   CsvTable csv;
-  for (const char* name : {"id", "name", "status", "component", "points", "reason", "anchor", "accepted_links", "sigma_m",
-                           "sigma_deg", "points_read", "points_dropped", "voxel_m", "spacing_m", "station", "local_origin_x",
-                           "local_origin_y", "local_origin_z", "format", "notes"})
+  for (const char* name : {"id",      "name",           "status",  "component",      "points",         "reason",
+                           "anchor",  "accepted_links", "sigma_m", "sigma_deg",      "points_read",    "points_dropped",
+                           "voxel_m", "spacing_m",      "station", "local_origin_x", "local_origin_y", "local_origin_z",
+                           "format",  "notes"})
     csv.add(name);
   csv.end_row();
   for (const ScanRecord& scan : record.scans) {
     const PlacedScan* placed = record.solution.find(scan.id);
     csv.add(scan.id).add(scan.name).add(word(scan.status));
-    if (placed != nullptr) csv.add(placed->component);
-    else csv.skip();
+    if (placed != nullptr)
+      csv.add(placed->component);
+    else
+      csv.skip();
     csv.add(static_cast<long long>(scan.points)).add(scan.reason);
     csv.add(placed != nullptr && record.solution.components[placed->component].anchor == scan.id ? 1 : 0);
     csv.add(accepted_links(record, scan.id));
-    if (placed != nullptr && placed->sigma_m) csv.add(*placed->sigma_m).add(placed->sigma_rad.value_or(0) * kDegPerRad);
-    else csv.skip().skip();
+    if (placed != nullptr && placed->sigma_m)
+      csv.add(*placed->sigma_m).add(placed->sigma_rad.value_or(0) * kDegPerRad);
+    else
+      csv.skip().skip();
     csv.add(static_cast<long long>(scan.num_read)).add(static_cast<long long>(scan.num_dropped));
     csv.add(scan.voxel_m).add(scan.spacing_m).add(word(scan.station_kind));
     for (int k = 0; k < 3; ++k) csv.add_exact(scan.local_origin_in_scan[k]);
@@ -84,9 +96,34 @@ std::string scans_csv(const SurveyRecord& record) {
 std::string links_csv(const SurveyRecord& record) {
   const std::vector<std::string> evidence = names_of(record, evidence_of), counts = names_of(record, counts_of);
   CsvTable csv;
-  for (const char* name : {"source", "target", "verdict", "reason", "probability", "overlap", "rms_m", "source_name",
-                           "target_name", "verdict_of_pair", "guided", "in_loop", "error_deg", "error_m", "overlap_of_source",
-                           "overlap_of_target", "r00", "r01", "r02", "tx", "r10", "r11", "r12", "ty", "r20", "r21", "r22", "tz"})
+  for (const char* name : {"source",
+                           "target",
+                           "verdict",
+                           "reason",
+                           "probability",
+                           "overlap",
+                           "rms_m",
+                           "source_name",
+                           "target_name",
+                           "verdict_of_pair",
+                           "guided",
+                           "in_loop",
+                           "error_deg",
+                           "error_m",
+                           "overlap_of_source",
+                           "overlap_of_target",
+                           "r00",
+                           "r01",
+                           "r02",
+                           "tx",
+                           "r10",
+                           "r11",
+                           "r12",
+                           "ty",
+                           "r20",
+                           "r21",
+                           "r22",
+                           "tz"})
     csv.add(name);
   for (const std::string& name : evidence) csv.add(name);
   for (const std::string& name : counts) csv.add("num_" + name);
@@ -96,14 +133,20 @@ std::string links_csv(const SurveyRecord& record) {
     const ScanRecord* source = find_scan(record, l.link.source);
     const ScanRecord* target = find_scan(record, l.link.target);
     csv.add(l.link.source).add(l.link.target).add(word(r.verdict)).add(r.reason).add(r.probability);
-    if (r.target_from_source) csv.add(r.overlap).add(r.rms_m);
-    else csv.skip().skip();
+    if (r.target_from_source)
+      csv.add(r.overlap).add(r.rms_m);
+    else
+      csv.skip().skip();
     csv.add(source != nullptr ? source->name : "").add(target != nullptr ? target->name : "");
     csv.add(word(l.measured)).add(l.link.guided ? 1 : 0).add(l.in_loop ? 1 : 0);
-    if (l.after) csv.add(l.after->rotation_rad * kDegPerRad).add(l.after->translation_m);
-    else csv.skip().skip();
-    if (r.target_from_source) csv.add(r.overlap_of_source).add(r.overlap_of_target);
-    else csv.skip().skip();
+    if (l.after)
+      csv.add(l.after->rotation_rad * kDegPerRad).add(l.after->translation_m);
+    else
+      csv.skip().skip();
+    if (r.target_from_source)
+      csv.add(r.overlap_of_source).add(r.overlap_of_target);
+    else
+      csv.skip().skip();
     const bool known = r.target_from_source && source != nullptr && target != nullptr;
     add_transform(csv, known ? std::optional(target_from_source_in_scans(record, l.link)) : std::nullopt);
     add_terms(csv, evidence, r.evidence);

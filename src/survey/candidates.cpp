@@ -47,7 +47,9 @@ double neighbour_distance_m(const Survey& survey) {
       if (const auto d = a == b ? std::nullopt : survey.distance_m(a, b)) distances.push_back(*d);
     if (distances.empty()) continue;
     std::sort(distances.begin(), distances.end());
-    kth.push_back(distances[std::min<std::size_t>(distances.size(), static_cast<std::size_t>(survey.options.pairs_per_scan)) - 1]);
+    kth.push_back(
+        distances[std::min<std::size_t>(distances.size(), static_cast<std::size_t>(survey.options.pairs_per_scan)) -
+                  1]);
   }
   if (kth.empty()) return 0;
   std::nth_element(kth.begin(), kth.begin() + static_cast<std::ptrdiff_t>(kth.size() / 2), kth.end());
@@ -105,14 +107,16 @@ void add_most_alike(const Survey& survey, std::map<Pair, const char*>& chosen) {
     std::vector<int> others;
     for (int b = 0; b < survey.size(); ++b)
       if (b != a && survey.allowed(a, b)) others.push_back(b);
-    std::stable_sort(others.begin(), others.end(), [&](int x, int y) { return survey.score(a, x) > survey.score(a, y); });
+    std::stable_sort(others.begin(), others.end(),
+                     [&](int x, int y) { return survey.score(a, x) > survey.score(a, y); });
     others.resize(std::min<std::size_t>(others.size(), static_cast<std::size_t>(survey.options.pairs_per_scan)));
     for (const int b : others) add(chosen, a, b, "likeness");
   }
 }
 
-/// Joins the parts of the graph by the most similar pairs between them. The union of each scan's best leaves room for it: every
-/// part holds at least one pair that two scans chose mutually, so parts - 1 more pairs stay within scans x pairs_per_scan.
+/// Joins the parts of the graph by the most similar pairs between them. The union of each scan's best leaves room for
+/// it: every part holds at least one pair that two scans chose mutually, so parts - 1 more pairs stay within scans x
+/// pairs_per_scan.
 void connect(const Survey& survey, std::map<Pair, const char*>& chosen, std::vector<std::string>& warnings) {
   survey::DisjointSets sets(survey.size());
   for (const auto& [pair, why] : chosen) sets.join(pair.first, pair.second);
@@ -128,14 +132,15 @@ void connect(const Survey& survey, std::map<Pair, const char*>& chosen, std::vec
   std::set<int> parts;
   for (int i = 0; i < survey.size(); ++i) parts.insert(sets.find(i));
   if (parts.size() > 1)
-    warnings.push_back(fmt::format("the candidate pairs leave {} unconnected parts: candidates.max_distance_m forbids the rest",
-                                   parts.size()));
+    warnings.push_back(fmt::format(
+        "the candidate pairs leave {} unconnected parts: candidates.max_distance_m forbids the rest", parts.size()));
 }
 
 std::vector<Candidate> ranked(const Survey& survey, const std::map<Pair, const char*>& chosen) {
   std::vector<Candidate> out;
   for (const auto& [pair, why] : chosen)
-    out.push_back({survey.scans[pair.second]->id, survey.scans[pair.first]->id, survey.score(pair.first, pair.second), why});
+    out.push_back(
+        {survey.scans[pair.second]->id, survey.scans[pair.first]->id, survey.score(pair.first, pair.second), why});
   std::stable_sort(out.begin(), out.end(), [](const Candidate& x, const Candidate& y) { return x.score > y.score; });
   return out;
 }

@@ -13,9 +13,9 @@ namespace isthmus {
 
 /// What the choice of pairs needs of one scan.
 struct CandidateInput {
-  int id = 0;                        ///< unique
-  std::string name;                  ///< unique; what the answer depends on, instead of the order of the files
-  std::span<const float> descriptors;///< num_keypoints x dimension, a row of unit length per keypoint
+  int id = 0;                          ///< unique
+  std::string name;                    ///< unique; what the answer depends on, instead of the order of the files
+  std::span<const float> descriptors;  ///< num_keypoints x dimension, a row of unit length per keypoint
   std::size_t num_keypoints = 0;
   std::optional<Eigen::Vector3d> prior_position;  ///< of the station, metres, one frame for all scans that have it
 };
@@ -31,10 +31,10 @@ struct CandidateOptions {
 const config::OptionTable<CandidateOptions>& candidate_options_table();
 
 struct Candidate {
-  int source = 0;   ///< id; the scan whose name sorts later in natural order
-  int target = 0;   ///< id
-  double score = 0; ///< likeness in [0, 1], damped by distance where priors are known
-  std::string why;  ///< "all pairs", "likeness", "connects", "group", "file order"
+  int source = 0;    ///< id; the scan whose name sorts later in natural order
+  int target = 0;    ///< id
+  double score = 0;  ///< likeness in [0, 1], damped by distance where priors are known
+  std::string why;   ///< "all pairs", "likeness", "connects", "group", "file order"
 };
 
 struct CandidateGraph {
@@ -42,9 +42,9 @@ struct CandidateGraph {
   std::vector<std::string> warnings;  ///< group entries that match no scan, parts that no pair may connect
 };
 
-/// Bags of visual words compared by tf-idf (Sivic, Zisserman 2003); a word is the signs of a descriptor's distances to random
-/// planes from a fixed seed (locality-sensitive hashing, Charikar 2002), so nothing is trained. The same graph for any order of
-/// the inputs and any thread count. Precondition: equal dimensions, unique ids and names.
+/// Bags of visual words compared by tf-idf (Sivic, Zisserman 2003); a word is the signs of a descriptor's distances to
+/// random planes from a fixed seed (locality-sensitive hashing, Charikar 2002), so nothing is trained. The same graph
+/// for any order of the inputs and any thread count. Precondition: equal dimensions, unique ids and names.
 CandidateGraph propose_candidates(std::span<const CandidateInput> scans, const CandidateOptions& options);
 
 /// Names as people sort them: runs of digits compare as numbers ("s2" before "s10").

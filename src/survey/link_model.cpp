@@ -11,8 +11,8 @@
 namespace isthmus::survey {
 namespace {
 
-// A direction in which a link says nothing is still known to this many voxels and radians: wide enough never to judge, narrow
-// enough to keep every matrix regular.
+// A direction in which a link says nothing is still known to this many voxels and radians: wide enough never to judge,
+// narrow enough to keep every matrix regular.
 constexpr double kCeilingVoxels = 100.0;
 constexpr double kCeilingRad = 0.5;
 // How far a rotation part may be from orthonormal before the measurement counts as broken rather than rounded.
@@ -55,8 +55,7 @@ Matrix6d adjoint(const Transform& t) {
 
 Relative compose(const Relative& c_from_b, const Relative& b_from_a) {
   const Matrix6d ad = adjoint(b_from_a.b_from_a.inverse());
-  return {c_from_b.b_from_a * b_from_a.b_from_a,
-          ad * c_from_b.covariance * ad.transpose() + b_from_a.covariance};
+  return {c_from_b.b_from_a * b_from_a.b_from_a, ad * c_from_b.covariance * ad.transpose() + b_from_a.covariance};
 }
 
 Relative inverse(const Relative& b_from_a) {
@@ -78,7 +77,8 @@ double chi2_of(const Vector6d& d, const Matrix6d& covariance) { return d.dot(cov
 NoiseModel noise_model(const PoseGraph& graph, const GraphScan& source, const SolveOptions& options) {
   NoiseModel noise;
   noise.floor_m = options.noise_voxels * graph.voxel_m;
-  noise.floor_rad = source.radius_m > 0 ? noise.floor_m / source.radius_m : options.noise_deg * std::numbers::pi / 180.0;
+  noise.floor_rad =
+      source.radius_m > 0 ? noise.floor_m / source.radius_m : options.noise_deg * std::numbers::pi / 180.0;
   noise.ceiling_m = kCeilingVoxels * graph.voxel_m;
   noise.ceiling_rad = kCeilingRad;
   return noise;

@@ -1,5 +1,5 @@
-// What a link says, in the frames in which the solver works: every scan's frame is moved to the scan's centre, so that the
-// noise floor is isotropic there and far local origins do not spoil the conditioning.
+// What a link says, in the frames in which the solver works: every scan's frame is moved to the scan's centre, so that
+// the noise floor is isotropic there and far local origins do not spoil the conditioning.
 #pragma once
 
 #include "geometry/transform.h"
@@ -7,7 +7,8 @@
 
 namespace isthmus::survey {
 
-/// A relative pose b_from_a with the covariance of its right perturbation b_from_a * exp(d), d in frame a, translation first.
+/// A relative pose b_from_a with the covariance of its right perturbation b_from_a * exp(d), d in frame a, translation
+/// first.
 struct Relative {
   Transform b_from_a = Transform::Identity();
   Matrix6d covariance = Matrix6d::Zero();
@@ -15,14 +16,14 @@ struct Relative {
 
 /// One usable link between nodes (indices into the sorted scans).
 struct Measurement {
-  int link = 0;    ///< index into the sorted links
-  int source = 0;  ///< node
-  int target = 0;  ///< node
-  Relative target_from_source;  ///< between centred frames, noise floor included
+  int link = 0;                                  ///< index into the sorted links
+  int source = 0;                                ///< node
+  int target = 0;                                ///< node
+  Relative target_from_source;                   ///< between centred frames, noise floor included
   Matrix6d sqrt_information = Matrix6d::Zero();  ///< W with W' W = covariance^-1
-  double log_odds = 0;   ///< log p/(1-p) of the pair stage's probability, clipped; 0 for guided links
-  bool votes = true;     ///< false for guided links
-  double overlap = 0;    ///< breaks ties
+  double log_odds = 0;  ///< log p/(1-p) of the pair stage's probability, clipped; 0 for guided links
+  bool votes = true;    ///< false for guided links
+  double overlap = 0;   ///< breaks ties
 };
 
 /// Adjoint of a transform for (translation, rotation) vectors: T exp(d) T^-1 = exp(Ad(T) d).

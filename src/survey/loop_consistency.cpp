@@ -79,7 +79,8 @@ std::vector<char> below_edge(const SpanningForest& forest, int tree_edge) {
 }
 
 /// What the link `via` across the cut predicts for the link `of`: of's upper end from its lower end.
-Relative predicted_across(const Judge& judge, const SpanningForest& forest, const std::vector<char>& below, int via, int of) {
+Relative predicted_across(const Judge& judge, const SpanningForest& forest, const std::vector<char>& below, int via,
+                          int of) {
   const Measurement& v = judge.measurements[via];
   const Measurement& o = judge.measurements[of];
   const int v_low = below[v.source] ? v.source : v.target, v_high = below[v.source] ? v.target : v.source;
@@ -93,7 +94,8 @@ std::vector<CutGroup> groups_across(const Judge& judge, const SpanningForest& fo
   const std::vector<char> below = below_edge(forest, tree_edge);
   std::vector<int> crossing;
   for (const int e : judge.active)
-    if (e != tree_edge && below[judge.measurements[e].source] != below[judge.measurements[e].target]) crossing.push_back(e);
+    if (e != tree_edge && below[judge.measurements[e].source] != below[judge.measurements[e].target])
+      crossing.push_back(e);
   std::stable_sort(crossing.begin(), crossing.end(),
                    [&](int a, int b) { return judge.measurements[a].log_odds > judge.measurements[b].log_odds; });
   std::vector<CutGroup> groups{{{tree_edge}, vote_of(judge.measurements[tree_edge], judge.options)}};
@@ -118,15 +120,16 @@ std::vector<int> disagreeing(const Judge& judge, const SpanningForest& forest, c
   return out;
 }
 
-/// Exchanges tree edges for links with more agreement behind them. Every exchange raises the summed votes of the links that
-/// agree with the tree, so this ends.
+/// Exchanges tree edges for links with more agreement behind them. Every exchange raises the summed votes of the links
+/// that agree with the tree, so this ends.
 std::vector<int> improved_tree(const Judge& judge, std::vector<int> tree) {
   for (bool changed = true; changed;) {
     changed = false;
     const SpanningForest forest = forest_of(judge.num_nodes, judge.measurements, tree);
     std::set<int> suspects;  // tree edges on a loop that does not close
     for (const int e : disagreeing(judge, forest, tree))
-      for (const int t : tree_path(forest, judge.measurements[e].source, judge.measurements[e].target)) suspects.insert(t);
+      for (const int t : tree_path(forest, judge.measurements[e].source, judge.measurements[e].target))
+        suspects.insert(t);
     for (const int t : suspects) {
       const std::vector<CutGroup> groups = groups_across(judge, forest, t);
       const auto best = std::max_element(groups.begin(), groups.end(),
@@ -168,7 +171,8 @@ double vote_of(const Measurement& m, const SolveOptions& options) {
   return std::max(0.0, m.log_odds) + std::log(1.0 / options.chance_closure);
 }
 
-LoopError error_against_path(std::span<const Measurement> measurements, const Measurement& m, const std::vector<int>& path) {
+LoopError error_against_path(std::span<const Measurement> measurements, const Measurement& m,
+                             const std::vector<int>& path) {
   const Relative other = along(measurements, path, m.source);
   const Vector6d d = disagreement(m.target_from_source.b_from_a, other.b_from_a);
   return {nodes_of_path(measurements, path, m.source), d.tail<3>().norm(), d.head<3>().norm(),
@@ -180,8 +184,7 @@ LoopJudgement judge_loops(int num_nodes, std::span<const Measurement> measuremen
   for (int e = 0; e < static_cast<int>(measurements.size()); ++e) judge.active.push_back(e);
   std::map<int, LoopRejection> all;
   for (;;) {
-    const std::vector<int> tree =
-        improved_tree(judge, spanning_edges(num_nodes, measurements, tree_order(judge)));
+    const std::vector<int> tree = improved_tree(judge, spanning_edges(num_nodes, measurements, tree_order(judge)));
     const SpanningForest forest = forest_of(num_nodes, measurements, tree);
     std::map<int, LoopRejection> now;
     for (const int e : disagreeing(judge, forest, tree)) reject(judge, forest, e, now);

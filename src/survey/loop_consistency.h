@@ -29,13 +29,15 @@ struct LoopJudgement {
 };
 
 /// Difference between a measurement and the path a..b of other measurements.
-LoopError error_against_path(std::span<const Measurement> measurements, const Measurement& m, const std::vector<int>& path);
+LoopError error_against_path(std::span<const Measurement> measurements, const Measurement& m,
+                             const std::vector<int>& path);
 
-/// Searches the spanning forest with which the largest weight of links agrees (exchange of tree edges), then rejects what
-/// disagrees with it. A link that closes no loop is never rejected. See docs/stages/pose_graph.md.
+/// Searches the spanning forest with which the largest weight of links agrees (exchange of tree edges), then rejects
+/// what disagrees with it. A link that closes no loop is never rejected. See docs/stages/pose_graph.md.
 LoopJudgement judge_loops(int num_nodes, std::span<const Measurement> measurements, const SolveOptions& options);
 
-/// What one more agreeing link adds to the log odds of a group of links: how unlikely agreement by chance is, and its own odds.
+/// What one more agreeing link adds to the log odds of a group of links: how unlikely agreement by chance is, and its
+/// own odds.
 double vote_of(const Measurement& m, const SolveOptions& options);
 
 }  // namespace isthmus::survey

@@ -1,9 +1,9 @@
 #include "survey/optimise.h"
 
-#include <algorithm>
-#include <array>
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace isthmus::survey {
@@ -125,7 +125,8 @@ std::vector<double> chi2_of_all(const std::vector<Pose>& poses, std::span<const 
   return chi2;
 }
 
-/// Weight of a residual under the TLS surrogate with control parameter mu (Yang et al. 2020, the closed-form update for TLS).
+/// Weight of a residual under the TLS surrogate with control parameter mu (Yang et al. 2020, the closed-form update for
+/// TLS).
 double tls_weight(double chi2, double limit, double mu) {
   if (chi2 <= mu / (mu + 1.0) * limit) return 1.0;
   if (chi2 >= (mu + 1.0) / mu * limit) return 0.0;
@@ -152,8 +153,8 @@ OptimisedPoses optimise(std::vector<Transform> root_from_node, std::span<const M
   std::vector<double> chi2 = chi2_of_all(poses, measurements);
   double mu = 0;  // below the limit everywhere the plain solution is the truncated one: nothing is truncated
   if (!chi2.empty() && *std::max_element(chi2.begin(), chi2.end()) > chi2_limit) {
-    // Where we differ from Yang et al., who start from the unweighted solution: wild links can drag its rotations so far that no
-    // reweighting finds back. The given poses come from the tree that the loops agree with.
+    // Where we differ from Yang et al., who start from the unweighted solution: wild links can drag its rotations so
+    // far that no reweighting finds back. The given poses come from the tree that the loops agree with.
     poses = poses_of(root_from_node);
     chi2 = chi2_of_all(poses, measurements);
     const double largest = std::max(chi2_limit, *std::max_element(chi2.begin(), chi2.end()));

@@ -12,12 +12,12 @@ namespace isthmus::survey {
 struct OptimisedPoses {
   std::vector<Transform> root_from_node;  ///< per node, between centred frames
   std::vector<double> weights;            ///< per measurement, 0 = an outlier, 1 = fully believed
-  std::string problem;                    ///< empty, or what the optimiser complained of: the poses are then its last ones
+  std::string problem;  ///< empty, or what the optimiser complained of: the poses are then its last ones
 };
 
-/// Minimises the sum over measurements of min(chi2, chi2_limit) by graduated non-convexity with truncated least squares (Yang,
-/// Antonante, Tzoumas, Carlone 2020, "Graduated non-convexity for robust spatial perception", section IV, TLS surrogate).
-/// `fixed` holds one node per part, whose pose stays as it is. Single-threaded, deterministic.
+/// Minimises the sum over measurements of min(chi2, chi2_limit) by graduated non-convexity with truncated least squares
+/// (Yang, Antonante, Tzoumas, Carlone 2020, "Graduated non-convexity for robust spatial perception", section IV, TLS
+/// surrogate). `fixed` holds one node per part, whose pose stays as it is. Single-threaded, deterministic.
 OptimisedPoses optimise(std::vector<Transform> root_from_node, std::span<const Measurement> measurements,
                         const std::vector<int>& fixed, double chi2_limit);
 

@@ -1,7 +1,7 @@
 // Pair results -> the survey's poses: which links to believe, which scans hang together, where each scan stands.
 //
-// Frames. Poses are component_from_local: from a scan's local frame (io/scan_reader.h) to the frame of its component, which
-// is the local frame of the component's anchor. A link's measurement is target_from_source between local frames.
+// Frames. Poses are component_from_local: from a scan's local frame (io/scan_reader.h) to the frame of its component,
+// which is the local frame of the component's anchor. A link's measurement is target_from_source between local frames.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,10 @@ namespace isthmus {
 
 /// One scan of the survey. Errors of links and poses are measured at its centre.
 struct GraphScan {
-  int id = 0;                                           ///< unique, >= 0
-  std::string name;                                     ///< for reasons; the id is used where it is empty
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();     ///< centroid of its points, local frame
-  double radius_m = 0;                                  ///< typical distance of its points from the centre; 0 = unknown
+  int id = 0;                                        ///< unique, >= 0
+  std::string name;                                  ///< for reasons; the id is used where it is empty
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< centroid of its points, local frame
+  double radius_m = 0;                               ///< typical distance of its points from the centre; 0 = unknown
 };
 
 /// One tried pair.
@@ -28,7 +28,8 @@ struct Link {
   int source = 0;
   int target = 0;
   PairResult result;
-  /// The hypothesis came from poses solved before (second round): that it agrees with them proves nothing, so it has no vote.
+  /// The hypothesis came from poses solved before (second round): that it agrees with them proves nothing, so it has no
+  /// vote.
   bool guided = false;
 };
 
@@ -57,18 +58,19 @@ struct LinkError {
 };
 
 struct SolvedLink {
-  Link link;                         ///< verdict and reason as they are after solving
-  Verdict measured = Verdict::failed;///< the verdict the pair stage gave
-  std::optional<LinkError> before;   ///< against the spanning tree's poses; absent if the ends are not in one component
-  std::optional<LinkError> after;    ///< against the final poses; absent likewise
-  bool in_loop = false;              ///< accepted, and confirmed by at least one loop (false: a bridge, believed alone)
+  Link link;                           ///< verdict and reason as they are after solving
+  Verdict measured = Verdict::failed;  ///< the verdict the pair stage gave
+  std::optional<LinkError> before;  ///< against the spanning tree's poses; absent if the ends are not in one component
+  std::optional<LinkError> after;   ///< against the final poses; absent likewise
+  bool in_loop = false;             ///< accepted, and confirmed by at least one loop (false: a bridge, believed alone)
 };
 
 struct PlacedScan {
   int id = 0;
   int component = 0;
   Transform component_from_local = Transform::Identity();
-  std::optional<double> sigma_m;    ///< standard deviation of the position of its centre relative to the anchor, worst axis
+  std::optional<double>
+      sigma_m;  ///< standard deviation of the position of its centre relative to the anchor, worst axis
   std::optional<double> sigma_rad;  ///< likewise of the rotation
 };
 
@@ -90,9 +92,10 @@ struct Solution {
 /// target_from_source between local frames as the solved poses say, if both scans are in one component.
 std::optional<Transform> predicted_target_from_source(const Solution& solution, int source, int target);
 
-/// Rejects links that contradict the loops, promotes ambiguous links that the loops confirm, optimises the poses robustly and
-/// finds the components. Method and sources: docs/stages/pose_graph.md. Runs in one thread; the same bytes for any order of
-/// scans and links. Never fails: a link that cannot be used is returned with verdict failed and the reason.
+/// Rejects links that contradict the loops, promotes ambiguous links that the loops confirm, optimises the poses
+/// robustly and finds the components. Method and sources: docs/stages/pose_graph.md. Runs in one thread; the same bytes
+/// for any order of scans and links. Never fails: a link that cannot be used is returned with verdict failed and the
+/// reason.
 Solution solve(const PoseGraph& graph, const SolveOptions& options);
 
 }  // namespace isthmus

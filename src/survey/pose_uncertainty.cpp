@@ -16,7 +16,8 @@ double largest_sigma(const Eigen::Matrix3d& covariance) {
 }  // namespace
 
 std::vector<std::optional<PoseSigma>> pose_sigmas(const std::vector<Transform>& root_from_node,
-                                                  std::span<const Measurement> measurements, const std::vector<int>& fixed) {
+                                                  std::span<const Measurement> measurements,
+                                                  const std::vector<int>& fixed) {
   std::vector<int> slot(root_from_node.size(), -1);
   int num_free = 0;
   std::vector<char> touched(root_from_node.size(), 0);

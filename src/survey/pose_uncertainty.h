@@ -15,9 +15,10 @@ struct PoseSigma {
   double rotation_rad = 0;
 };
 
-/// Inverts the normal matrix of the measurements at the solution (dense: meant for some hundred nodes). Absent for fixed nodes
-/// and for nodes that no measurement ties to one. `fixed` holds one node per part.
+/// Inverts the normal matrix of the measurements at the solution (dense: meant for some hundred nodes). Absent for
+/// fixed nodes and for nodes that no measurement ties to one. `fixed` holds one node per part.
 std::vector<std::optional<PoseSigma>> pose_sigmas(const std::vector<Transform>& root_from_node,
-                                                  std::span<const Measurement> measurements, const std::vector<int>& fixed);
+                                                  std::span<const Measurement> measurements,
+                                                  const std::vector<int>& fixed);
 
 }  // namespace isthmus::survey

@@ -11,15 +11,16 @@
 namespace isthmus::survey {
 namespace {
 
-// Agreement that is to count as evidence must be tight whatever the uncertainties are: this many noise floors (two voxels with
-// the default floor of a quarter voxel), in translation and, at the scan's radius, in rotation.
+// Agreement that is to count as evidence must be tight whatever the uncertainties are: this many noise floors (two
+// voxels with the default floor of a quarter voxel), in translation and, at the scan's radius, in rotation.
 constexpr double kTightFloors = 8.0;
 // Links tried per pair of parts when a loop around three parts is sought.
 constexpr std::size_t kLinksPerSide = 3;
 
 double probability_of(const Measurement& m) { return 1.0 / (1.0 + std::exp(-m.log_odds)); }
 
-/// Posterior that links with these probabilities are all right, given that they agree: if any is wrong, they agree by chance.
+/// Posterior that links with these probabilities are all right, given that they agree: if any is wrong, they agree by
+/// chance.
 double joint_probability(double all_right, const SolveOptions& options) {
   return all_right / (all_right + (1.0 - all_right) * options.chance_closure);
 }
@@ -54,9 +55,8 @@ std::map<PartPair, std::vector<int>> links_between_parts(const SolvedParts& part
     if (!parts.accepted[e] && m.votes && a != b) between[{std::min(a, b), std::max(a, b)}].push_back(e);
   }
   for (auto& [pair, links] : between)
-    std::stable_sort(links.begin(), links.end(), [&](int x, int y) {
-      return parts.measurements[x].log_odds > parts.measurements[y].log_odds;
-    });
+    std::stable_sort(links.begin(), links.end(),
+                     [&](int x, int y) { return parts.measurements[x].log_odds > parts.measurements[y].log_odds; });
   return between;
 }
 
@@ -79,7 +79,8 @@ struct Join {
   double probability = 0;
 };
 
-/// Groups of links between two parts by their joint transform; the best group against its rivals and against "all are wrong".
+/// Groups of links between two parts by their joint transform; the best group against its rivals and against "all are
+/// wrong".
 Join best_group(const SolvedParts& parts, const std::vector<int>& links, int from, const std::vector<NoiseModel>& noise,
                 const SolveOptions& options) {
   std::vector<std::vector<int>> groups;
@@ -89,8 +90,10 @@ Join best_group(const SolvedParts& parts, const std::vector<int>& links, int fro
     const auto home = std::find_if(groups.begin(), groups.end(), [&](const std::vector<int>& g) {
       return agrees_tightly(walked_from(m, start), predicted_by(parts, g.front(), e, from), noise[start], options);
     });
-    if (home == groups.end()) groups.push_back({e});
-    else home->push_back(e);
+    if (home == groups.end())
+      groups.push_back({e});
+    else
+      home->push_back(e);
   }
   // Odds of "group g is right" against "all are wrong and agree by chance": each link brings its own odds, and g's
   // members' agreement needs no chance any more.
@@ -168,7 +171,8 @@ std::vector<Promotion> confirmed_within_parts(const SolvedParts& parts, const st
   return out;
 }
 
-std::vector<Promotion> best_join(const SolvedParts& parts, const std::vector<NoiseModel>& noise, const SolveOptions& options) {
+std::vector<Promotion> best_join(const SolvedParts& parts, const std::vector<NoiseModel>& noise,
+                                 const SolveOptions& options) {
   const std::map<PartPair, std::vector<int>> between = links_between_parts(parts);
   Join best;
   for (const auto& [pair, links] : between) {

@@ -12,10 +12,10 @@ namespace isthmus::survey {
 /// The survey as solved so far.
 struct SolvedParts {
   int num_nodes = 0;
-  std::vector<int> part;                     ///< per node
-  std::vector<Transform> root_from_node;     ///< per node, within its part, centred frames
-  std::span<const Measurement> measurements; ///< accepted and ambiguous
-  std::vector<char> accepted;                ///< per measurement: carries the poses
+  std::vector<int> part;                      ///< per node
+  std::vector<Transform> root_from_node;      ///< per node, within its part, centred frames
+  std::span<const Measurement> measurements;  ///< accepted and ambiguous
+  std::vector<char> accepted;                 ///< per measurement: carries the poses
 };
 
 struct Promotion {
@@ -29,8 +29,10 @@ struct Promotion {
 std::vector<Promotion> confirmed_within_parts(const SolvedParts& parts, const std::vector<NoiseModel>& noise,
                                               const SolveOptions& options);
 
-/// Ambiguous links that join parts: at least two links between two parts whose joint transforms agree, or three links around
-/// three parts whose loop closes; only those of the most probable join are returned, empty if none is probable enough.
-std::vector<Promotion> best_join(const SolvedParts& parts, const std::vector<NoiseModel>& noise, const SolveOptions& options);
+/// Ambiguous links that join parts: at least two links between two parts whose joint transforms agree, or three links
+/// around three parts whose loop closes; only those of the most probable join are returned, empty if none is probable
+/// enough.
+std::vector<Promotion> best_join(const SolvedParts& parts, const std::vector<NoiseModel>& noise,
+                                 const SolveOptions& options);
 
 }  // namespace isthmus::survey

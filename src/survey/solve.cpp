@@ -30,11 +30,11 @@ struct Solver {
   const SolveOptions& options;
   double voxel_m;
   std::vector<GraphScan> scans;
-  std::vector<NoiseModel> noise;           // per node
-  std::vector<SolvedLink> links;           // sorted
-  std::vector<Measurement> measurements;   // of links measured accepted or ambiguous
-  std::vector<int> tree;                   // measurements that most loops agree with, ascending
-  std::vector<Transform> root_from_node;   // solved, centred frames
+  std::vector<NoiseModel> noise;          // per node
+  std::vector<SolvedLink> links;          // sorted
+  std::vector<Measurement> measurements;  // of links measured accepted or ambiguous
+  std::vector<int> tree;                  // measurements that most loops agree with, ascending
+  std::vector<Transform> root_from_node;  // solved, centred frames
   std::vector<std::string> warnings;
 
   [[nodiscard]] int num_nodes() const { return static_cast<int>(scans.size()); }
@@ -57,7 +57,8 @@ std::string name_of(const GraphScan& scan) { return scan.name.empty() ? std::to_
 std::string loop_text(const Solver& s, const std::vector<int>& nodes) {
   std::string text;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
-    const bool left_out = nodes.size() > kMaxNamedScans && k >= kMaxNamedScans / 2 && k + kMaxNamedScans / 2 < nodes.size();
+    const bool left_out =
+        nodes.size() > kMaxNamedScans && k >= kMaxNamedScans / 2 && k + kMaxNamedScans / 2 < nodes.size();
     if (left_out && k != kMaxNamedScans / 2) continue;
     if (k > 0) text += " - ";
     text += left_out ? fmt::format("({} more)", nodes.size() - kMaxNamedScans) : name_of(s.scans[nodes[k]]);
@@ -125,9 +126,11 @@ void reject_by_loops(Solver& s) {
     const std::string loop = loop_text(s, r.error.loop);
     const std::string error = error_text(r.error.rotation_rad, r.error.translation_m);
     s.judge(accepted[r.measurement], Verdict::rejected,
-            r.undecided ? fmt::format("the loop {} misses by {}, and nothing else tells which of its links is wrong", loop, error)
+            r.undecided ? fmt::format("the loop {} misses by {}, and nothing else tells which of its links is wrong",
+                                      loop, error)
                         : fmt::format("disagrees with the loop {} by {}", loop, error));
-    if (r.undecided) s.warnings.push_back(fmt::format("the loop {} misses by {}: its least certain links were rejected", loop, error));
+    if (r.undecided)
+      s.warnings.push_back(fmt::format("the loop {} misses by {}: its least certain links were rejected", loop, error));
   }
 }
 
@@ -147,7 +150,8 @@ std::vector<int> spanning(const Solver& s) {
 /// Node of each part's anchor: most accepted links, then the smallest id. Keyed by the part's root.
 std::map<int, int> anchors_of(const Solver& s, const SpanningForest& forest) {
   std::vector<int> degree(s.scans.size(), 0);
-  for (const int e : s.with_verdict(Verdict::accepted)) ++degree[s.measurements[e].source], ++degree[s.measurements[e].target];
+  for (const int e : s.with_verdict(Verdict::accepted))
+    ++degree[s.measurements[e].source], ++degree[s.measurements[e].target];
   std::map<int, int> anchors;
   for (int node = 0; node < s.num_nodes(); ++node) {
     const auto [at, first] = anchors.try_emplace(forest.root[node], node);
@@ -172,10 +176,12 @@ std::vector<char> accepted_mask(const Solver& s) {
 std::string outlier_reason(const Solver& s, int e) {
   const Measurement& m = s.measurements[e];
   const std::vector<int> path = shortest_path(s.num_nodes(), s.measurements, accepted_mask(s), m.source, m.target);
-  const Vector6d d = disagreement(m.target_from_source.b_from_a, s.root_from_node[m.target].inverse() * s.root_from_node[m.source]);
+  const Vector6d d =
+      disagreement(m.target_from_source.b_from_a, s.root_from_node[m.target].inverse() * s.root_from_node[m.source]);
   const std::string error = error_text(d.tail<3>().norm(), d.head<3>().norm());
   if (path.empty()) return "disagrees with the solved poses by " + error;
-  return fmt::format("disagrees with the loop {} by {}", loop_text(s, nodes_of_path(s.measurements, path, m.source)), error);
+  return fmt::format("disagrees with the loop {} by {}", loop_text(s, nodes_of_path(s.measurements, path, m.source)),
+                     error);
 }
 
 /// Optimises the accepted links; true if none was found to be an outlier.
@@ -241,7 +247,8 @@ bool promote(Solver& s) {
 }
 
 LinkError error_at(const Measurement& m, const std::vector<Transform>& root_from_node) {
-  const Vector6d d = disagreement(m.target_from_source.b_from_a, root_from_node[m.target].inverse() * root_from_node[m.source]);
+  const Vector6d d =
+      disagreement(m.target_from_source.b_from_a, root_from_node[m.target].inverse() * root_from_node[m.source]);
   return {d.tail<3>().norm(), d.head<3>().norm(), chi2_at(m, root_from_node)};
 }
 
@@ -254,7 +261,8 @@ void mark_loops(Solver& s) {
   for (const int e : voters) {
     if (std::binary_search(tree.begin(), tree.end(), e)) continue;
     s.link_of(e).in_loop = true;
-    for (const int t : tree_path(forest, s.measurements[e].source, s.measurements[e].target)) s.link_of(t).in_loop = true;
+    for (const int t : tree_path(forest, s.measurements[e].source, s.measurements[e].target))
+      s.link_of(t).in_loop = true;
   }
 }
 
@@ -308,7 +316,8 @@ std::vector<PlacedScan> placed_scans(const Solver& s, const SpanningForest& fore
 }  // namespace
 
 const PlacedScan* Solution::find(int id) const {
-  const auto at = std::lower_bound(scans.begin(), scans.end(), id, [](const PlacedScan& s, int key) { return s.id < key; });
+  const auto at =
+      std::lower_bound(scans.begin(), scans.end(), id, [](const PlacedScan& s, int key) { return s.id < key; });
   return at != scans.end() && at->id == id ? &*at : nullptr;
 }
 

@@ -40,8 +40,8 @@ Relative walked_from(const Measurement& measurement, int from) {
 
 SpanningForest forest_of(int num_nodes, std::span<const Measurement> measurements, const std::vector<int>& edges) {
   const auto n = static_cast<std::size_t>(num_nodes);
-  SpanningForest forest{std::vector<int>(n, -1), std::vector<int>(n, -1), std::vector<int>(n, -1), std::vector<int>(n, 0),
-                        std::vector<Transform>(n, Transform::Identity())};
+  SpanningForest forest{std::vector<int>(n, -1), std::vector<int>(n, -1), std::vector<int>(n, -1),
+                        std::vector<int>(n, 0), std::vector<Transform>(n, Transform::Identity())};
   const Adjacency adjacency = adjacency_of(num_nodes, measurements, edges);
   for (int start = 0; start < num_nodes; ++start) {
     if (forest.root[start] >= 0) continue;
@@ -64,7 +64,8 @@ SpanningForest forest_of(int num_nodes, std::span<const Measurement> measurement
   return forest;
 }
 
-std::vector<int> spanning_edges(int num_nodes, std::span<const Measurement> measurements, const std::vector<int>& order) {
+std::vector<int> spanning_edges(int num_nodes, std::span<const Measurement> measurements,
+                                const std::vector<int>& order) {
   DisjointSets sets(num_nodes);
   std::vector<int> edges;
   for (const int e : order)
@@ -97,8 +98,8 @@ Relative along(std::span<const Measurement> measurements, const std::vector<int>
   return b_from_a;
 }
 
-std::vector<int> shortest_path(int num_nodes, std::span<const Measurement> measurements, const std::vector<char>& usable,
-                               int a, int b) {
+std::vector<int> shortest_path(int num_nodes, std::span<const Measurement> measurements,
+                               const std::vector<char>& usable, int a, int b) {
   std::vector<int> usable_edges;
   for (int e = 0; e < static_cast<int>(measurements.size()); ++e)
     if (usable[e]) usable_edges.push_back(e);

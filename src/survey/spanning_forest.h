@@ -33,8 +33,10 @@ struct SpanningForest {
 /// The forest that the measurements `edges` span; they must hold no cycle.
 SpanningForest forest_of(int num_nodes, std::span<const Measurement> measurements, const std::vector<int>& edges);
 
-/// Maximum spanning forest (Kruskal 1956): takes `order` (best first) and keeps what joins two parts. Returns ascending indices.
-std::vector<int> spanning_edges(int num_nodes, std::span<const Measurement> measurements, const std::vector<int>& order);
+/// Maximum spanning forest (Kruskal 1956): takes `order` (best first) and keeps what joins two parts. Returns ascending
+/// indices.
+std::vector<int> spanning_edges(int num_nodes, std::span<const Measurement> measurements,
+                                const std::vector<int>& order);
 
 /// The measurement walked from node `from`: other_from_`from`.
 Relative walked_from(const Measurement& measurement, int from);
@@ -45,9 +47,10 @@ std::vector<int> tree_path(const SpanningForest& forest, int a, int b);
 /// b_from_a along the measurements of a path that starts at node a.
 Relative along(std::span<const Measurement> measurements, const std::vector<int>& path, int a);
 
-/// Fewest measurements from a to b among those marked usable (breadth first, smallest index first); empty if there are none.
-std::vector<int> shortest_path(int num_nodes, std::span<const Measurement> measurements, const std::vector<char>& usable,
-                               int a, int b);
+/// Fewest measurements from a to b among those marked usable (breadth first, smallest index first); empty if there are
+/// none.
+std::vector<int> shortest_path(int num_nodes, std::span<const Measurement> measurements,
+                               const std::vector<char>& usable, int a, int b);
 
 /// Nodes of a path that starts at node a.
 std::vector<int> nodes_of_path(std::span<const Measurement> measurements, const std::vector<int>& path, int a);

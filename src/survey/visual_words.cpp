@@ -10,12 +10,14 @@
 namespace isthmus::survey {
 namespace {
 
-// Several independent short codes instead of one long one: a descriptor near a plane of one table is far from those of others.
+// Several independent short codes instead of one long one: a descriptor near a plane of one table is far from those of
+// others.
 constexpr int kTables = 4;
 constexpr int kBits = 11;
 constexpr std::uint64_t kSeed = 0x15AA5;  // any number; fixed, so that words mean the same in every run
 
-/// Random planes through the mean descriptor: without it the all-positive histograms would lie on one side of most planes.
+/// Random planes through the mean descriptor: without it the all-positive histograms would lie on one side of most
+/// planes.
 struct Planes {
   std::vector<float> mean;     // dimension
   std::vector<float> normals;  // (kTables x kBits) x dimension
@@ -91,16 +93,20 @@ std::vector<WordBag> weighted_bags(std::span<const DescriptorView> scans) {
   std::map<std::uint32_t, int> scans_with_word;
   for (const auto& scan : counts)
     for (const auto& [word, count] : scan) ++scans_with_word[word];
-  parallel_for_index(scans.size(), 1, [&](std::size_t i) { bags[i] = weighted(counts[i], scans_with_word, scans.size()); });
+  parallel_for_index(scans.size(), 1,
+                     [&](std::size_t i) { bags[i] = weighted(counts[i], scans_with_word, scans.size()); });
   return bags;
 }
 
 double likeness(const WordBag& a, const WordBag& b) {
   double sum = 0;
   for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
-    if (a[i].first < b[j].first) ++i;
-    else if (b[j].first < a[i].first) ++j;
-    else sum += static_cast<double>(a[i++].second) * b[j++].second;
+    if (a[i].first < b[j].first)
+      ++i;
+    else if (b[j].first < a[i].first)
+      ++j;
+    else
+      sum += static_cast<double>(a[i++].second) * b[j++].second;
   }
   return std::clamp(sum, 0.0, 1.0);
 }

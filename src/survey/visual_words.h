@@ -17,8 +17,9 @@ struct DescriptorView {
   std::size_t num_keypoints = 0;
 };
 
-/// Counts the words of every scan and weighs them: sqrt(count) x log(scans / scans that have the word), unit length. A scan
-/// without descriptors, or with nothing but words that every scan has, gets an empty bag. Sums run in the given order.
+/// Counts the words of every scan and weighs them: sqrt(count) x log(scans / scans that have the word), unit length. A
+/// scan without descriptors, or with nothing but words that every scan has, gets an empty bag. Sums run in the given
+/// order.
 std::vector<WordBag> weighted_bags(std::span<const DescriptorView> scans);
 
 /// Cosine of two bags, in [0, 1].

@@ -31,13 +31,20 @@ std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     if (quoted) {
-      if (c == '"' && i + 1 < text.size() && text[i + 1] == '"') rows.back().back() += '"', ++i;
-      else if (c == '"') quoted = false;
-      else rows.back().back() += c;
-    } else if (c == '"') quoted = true;
-    else if (c == ',') rows.back().emplace_back();
-    else if (c == '\n') rows.emplace_back(1);
-    else rows.back().back() += c;
+      if (c == '"' && i + 1 < text.size() && text[i + 1] == '"')
+        rows.back().back() += '"', ++i;
+      else if (c == '"')
+        quoted = false;
+      else
+        rows.back().back() += c;
+    } else if (c == '"')
+      quoted = true;
+    else if (c == ',')
+      rows.back().emplace_back();
+    else if (c == '\n')
+      rows.emplace_back(1);
+    else
+      rows.back().back() += c;
   }
   rows.pop_back();
   return rows;
@@ -141,7 +148,8 @@ TEST(Outputs, PosesAreInTheFilesOwnCoordinates) {
   SurveyRecord record = sample_record(14);
   Rng rng(3);
   for (ScanRecord& scan : record.scans)
-    scan.local_origin_in_scan = Eigen::Vector3d(500000 + rng.uniform(0, 50), 5240000 + rng.uniform(0, 50), rng.uniform(0, 500));
+    scan.local_origin_in_scan =
+        Eigen::Vector3d(500000 + rng.uniform(0, 50), 5240000 + rng.uniform(0, 50), rng.uniform(0, 500));
   std::istringstream lines(poses_text(record));
   std::map<std::string, Transform> poses;
   for (std::string line; std::getline(lines, line);) {
@@ -160,7 +168,8 @@ TEST(Outputs, PosesAreInTheFilesOwnCoordinates) {
   // A point goes the same way through local frames as through the file's coordinates.
   const ScanRecord& scan = record.scans[5];
   const Eigen::Vector3d p_in_local(3, -2, 1);
-  const Eigen::Vector3d by_local = record.solution.find(5)->component_from_local * p_in_local + find_scan(record, anchor)->local_origin_in_scan;
+  const Eigen::Vector3d by_local =
+      record.solution.find(5)->component_from_local * p_in_local + find_scan(record, anchor)->local_origin_in_scan;
   const Eigen::Vector3d by_file = poses.at(scan.name) * (p_in_local + scan.local_origin_in_scan);
   EXPECT_LT((by_local - by_file).norm(), 1e-6);
 }
@@ -168,7 +177,8 @@ TEST(Outputs, PosesAreInTheFilesOwnCoordinates) {
 TEST(Outputs, G2oEdgesAgreeWithVerticesInScanFrames) {
   SurveyRecord record = sample_record(14);
   Rng rng(3);
-  for (ScanRecord& scan : record.scans) scan.local_origin_in_scan = Eigen::Vector3d(rng.uniform(0, 90), rng.uniform(0, 90), 7);
+  for (ScanRecord& scan : record.scans)
+    scan.local_origin_in_scan = Eigen::Vector3d(rng.uniform(0, 90), rng.uniform(0, 90), 7);
   const G2o g = parse_g2o(pose_graph_g2o(record));
   EXPECT_EQ(g.vertices.size(), 12U);
   EXPECT_EQ(g.edges.size(), static_cast<std::size_t>(count(record).accepted));
@@ -180,8 +190,8 @@ TEST(Outputs, G2oEdgesAgreeWithVerticesInScanFrames) {
   }
 }
 
-/// The information convention, proven: the cost that g2o computes from our file equals the cost that the pair stage meant,
-/// d' I d for target_from_source * exp(d) between local frames, for every small d, with every cross term.
+/// The information convention, proven: the cost that g2o computes from our file equals the cost that the pair stage
+/// meant, d' I d for target_from_source * exp(d) between local frames, for every small d, with every cross term.
 TEST(Outputs, G2oInformationMeansWhatThePairStageMeant) {
   Rng rng(8);
   for (int trial = 0; trial < 20; ++trial) {
@@ -194,7 +204,8 @@ TEST(Outputs, G2oInformationMeansWhatThePairStageMeant) {
     link.result.information = a.transpose() * a;
     link.result.target_from_source = random_pose(rng, 20);
     for (ScanRecord& scan : record.scans)
-      scan.local_origin_in_scan = Eigen::Vector3d(rng.uniform(-9, 9), rng.uniform(-9, 9), rng.uniform(-9, 9)), scan.status = ScanStatus::unplaced;
+      scan.local_origin_in_scan = Eigen::Vector3d(rng.uniform(-9, 9), rng.uniform(-9, 9), rng.uniform(-9, 9)),
+      scan.status = ScanStatus::unplaced;
     const G2o g = parse_g2o(pose_graph_g2o(record));
     ASSERT_EQ(g.edges.size(), 1U);
     EXPECT_EQ(g.edges[0].from, link.target);
@@ -208,7 +219,8 @@ TEST(Outputs, G2oInformationMeansWhatThePairStageMeant) {
       const auto error_at = [&](double step) {
         Vector6d d = Vector6d::Zero();
         d[k] = step;
-        const Transform moved = target_origin * Transform(*link.result.target_from_source * exp_of(d)) * source_origin.inverse();
+        const Transform moved =
+            target_origin * Transform(*link.result.target_from_source * exp_of(d)) * source_origin.inverse();
         return g2o_error(g.edges[0].measurement, Transform::Identity(), moved);
       };
       jacobian.col(k) = (error_at(kStep) - error_at(-kStep)) / (2 * kStep);
@@ -240,7 +252,8 @@ TEST(Outputs, EmptySurveyStillGivesEveryFile) {
   std::filesystem::remove_all(folder);
   const Result<void> written = write_outputs(SurveyRecord{}, folder);
   ASSERT_TRUE(written) << written.error().text();
-  for (const char* name : {"scans.csv", "poses.txt", "pose_graph.g2o", "links.csv", "timings.csv", "run.json", "report.html"})
+  for (const char* name :
+       {"scans.csv", "poses.txt", "pose_graph.g2o", "links.csv", "timings.csv", "run.json", "report.html"})
     EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
   EXPECT_EQ(*read_file(folder / "poses.txt"), "");
   EXPECT_NE(read_file(folder / "report.html")->find("No scan was found."), std::string::npos);

@@ -18,7 +18,8 @@ inline report::SurveyRecord sample_record(int num_scans) {
     const double angle = 6.283 * i / (num_scans - 2), radius = 40 + 10 * std::sin(3 * angle);
     Transform pose = Transform::Identity();
     pose.linear() = rotation_from_vector({0, 0, world.rng.uniform(-3, 3)});
-    pose.translation() = Eigen::Vector3d(1.5 * radius * std::cos(angle), radius * std::sin(angle), world.rng.uniform(-1, 1));
+    pose.translation() =
+        Eigen::Vector3d(1.5 * radius * std::cos(angle), radius * std::sin(angle), world.rng.uniform(-1, 1));
     world.world_from_local[i] = pose;
     world.graph.scans[i].name = fmt::format("street/station_{:03}.ply", i);
     world.graph.scans[i].centre.setZero();
@@ -30,13 +31,14 @@ inline report::SurveyRecord sample_record(int num_scans) {
       const auto [low, high] = std::minmax(i, j);
       const double probability = 1.0 - 0.25 * world.rng.uniform() * world.rng.uniform();
       const double overlap = 0.55 / step * world.rng.uniform(0.6, 1.0);
-      Link& link = (i + step) % 9 == 0  ? world.wrong(high, low, 0.6, Verdict::rejected)
+      Link& link = (i + step) % 9 == 0   ? world.wrong(high, low, 0.6, Verdict::rejected)
                    : (i + step) % 7 == 0 ? world.shifted(high, low, 1.0, 0.6, Verdict::ambiguous)
                                          : world.right(high, low, probability);
       link.result.overlap = link.result.overlap_of_source = overlap;
       link.result.overlap_of_target = overlap * 1.2;
       link.result.rms_m = kVoxel * world.rng.uniform(0.05, 0.45);
-      if (link.result.verdict != Verdict::accepted) link.result.reason = "a rival pose 1.0 m away explains the points as well";
+      if (link.result.verdict != Verdict::accepted)
+        link.result.reason = "a rival pose 1.0 m away explains the points as well";
       link.result.evidence = {{"support", overlap}, {"contradiction", 0.01}};
       link.result.seconds_by_stage = {{"hypotheses", 0.2}, {"refine", 0.1}};
     }
@@ -64,7 +66,8 @@ inline report::SurveyRecord sample_record(int num_scans) {
   report::ScanRecord broken;
   broken.id = num_scans;
   broken.name = "street/station_%20broken.ply";
-  broken.reason = "station_ broken.ply, byte 1034: the file ends inside the vertices, \"4800000\" were promised (copy it again)";
+  broken.reason =
+      "station_ broken.ply, byte 1034: the file ends inside the vertices, \"4800000\" were promised (copy it again)";
   record.scans.push_back(broken);
   record.settings_yaml = "sampling:\n  voxel_m: 0.1   # from the scans\n";
   record.versions = {{"isthmus", "0.1.0"}, {"ceres", "2.1.0"}};

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 #include <set>
 
 #include "base/rng.h"
@@ -16,8 +16,8 @@ namespace {
 constexpr int kDimension = 33;
 constexpr int kKeypoints = 120;
 
-/// Scans along a street: each sees some places, every place has its own descriptors; neighbours share places. All of them share
-/// half their keypoints with everybody (walls), which must not count.
+/// Scans along a street: each sees some places, every place has its own descriptors; neighbours share places. All of
+/// them share half their keypoints with everybody (walls), which must not count.
 struct Street {
   std::vector<std::vector<float>> descriptors;
   std::vector<CandidateInput> inputs;
@@ -48,7 +48,8 @@ struct Street {
 
 std::set<std::pair<int, int>> pairs_of(const CandidateGraph& graph) {
   std::set<std::pair<int, int>> pairs;
-  for (const Candidate& c : graph.candidates) pairs.insert({std::min(c.source, c.target), std::max(c.source, c.target)});
+  for (const Candidate& c : graph.candidates)
+    pairs.insert({std::min(c.source, c.target), std::max(c.source, c.target)});
   return pairs;
 }
 

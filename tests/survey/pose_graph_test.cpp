@@ -77,7 +77,8 @@ TEST(Solve, WrongLinkInALoopIsRejectedWithItsError) {
   ASSERT_NE(link, nullptr);
   EXPECT_EQ(link->link.result.verdict, Verdict::rejected);
   EXPECT_EQ(link->measured, Verdict::accepted);
-  EXPECT_NE(link->link.result.reason.find("disagrees with the loop s1 - "), std::string::npos) << link->link.result.reason;
+  EXPECT_NE(link->link.result.reason.find("disagrees with the loop s1 - "), std::string::npos)
+      << link->link.result.reason;
   EXPECT_NE(link->link.result.reason.find("3.2"), std::string::npos) << link->link.result.reason;
   EXPECT_EQ(accepted(solution).size(), 8U);
   EXPECT_LT(worst_error_m(world, solution), kVoxel);
@@ -163,8 +164,10 @@ TEST(Solve, ComponentsAreNumberedBySizeThenId) {
 TEST(Solve, GuidedLinkProvesNothing) {
   World world(3);
   world.wrong(0, 1, 0.9), world.right(1, 2, 0.9);
-  // Told to look where the wrong link points, the second round finds "agreement" and outvotes the direct link by number.
-  const Transform told = *world.graph.links[1].result.target_from_source * *world.graph.links[0].result.target_from_source;
+  // Told to look where the wrong link points, the second round finds "agreement" and outvotes the direct link by
+  // number.
+  const Transform told =
+      *world.graph.links[1].result.target_from_source * *world.graph.links[0].result.target_from_source;
   world.add(0, 2, told, 0.9).guided = true;
   world.right(0, 2, 0.99);
   const Solution solution = solve(world.graph, {});
@@ -267,8 +270,10 @@ TEST(Solve, OrderOfScansAndLinksDoesNotShow) {
   Rng rng(99);
   for (int trial = 0; trial < 3; ++trial) {
     PoseGraph shuffled = world.graph;
-    for (std::size_t i = shuffled.links.size(); i > 1; --i) std::swap(shuffled.links[i - 1], shuffled.links[rng.below(i)]);
-    for (std::size_t i = shuffled.scans.size(); i > 1; --i) std::swap(shuffled.scans[i - 1], shuffled.scans[rng.below(i)]);
+    for (std::size_t i = shuffled.links.size(); i > 1; --i)
+      std::swap(shuffled.links[i - 1], shuffled.links[rng.below(i)]);
+    for (std::size_t i = shuffled.scans.size(); i > 1; --i)
+      std::swap(shuffled.scans[i - 1], shuffled.scans[rng.below(i)]);
     const Solution second = solve(shuffled, {});
     ASSERT_EQ(second.scans.size(), first.scans.size());
     for (std::size_t i = 0; i < first.scans.size(); ++i)
@@ -296,7 +301,8 @@ TEST(Solve, FramesOfTheScansDoNotMatter) {
   }
   for (Link& link : moved.links) {
     const Transform& source = new_from_old[link.source];
-    *link.result.target_from_source = orthonormalised(new_from_old[link.target] * *link.result.target_from_source * source.inverse());
+    *link.result.target_from_source =
+        orthonormalised(new_from_old[link.target] * *link.result.target_from_source * source.inverse());
     // d_new = Ad(new_from_old) d_old, in the source's frame
     Matrix6d ad = Matrix6d::Zero();
     const Eigen::Vector3d t = source.translation();

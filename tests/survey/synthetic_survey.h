@@ -15,7 +15,8 @@ inline Transform random_pose(Rng& rng, double range_m) {
   Transform t = Transform::Identity();
   const Eigen::Vector3d axis(rng.normal(), rng.normal(), rng.normal());
   t.linear() = rotation_from_vector(axis.normalized() * rng.uniform(0.0, 3.0));
-  t.translation() = Eigen::Vector3d(rng.uniform(-range_m, range_m), rng.uniform(-range_m, range_m), rng.uniform(-2.0, 2.0));
+  t.translation() =
+      Eigen::Vector3d(rng.uniform(-range_m, range_m), rng.uniform(-range_m, range_m), rng.uniform(-2.0, 2.0));
   return t;
 }
 
@@ -90,7 +91,8 @@ inline const SolvedLink* find_link(const Solution& solution, int source, int tar
   return nullptr;
 }
 
-/// Largest distance of a solved relative pose from the truth at the source's centre, over all scans of the anchor's component.
+/// Largest distance of a solved relative pose from the truth at the source's centre, over all scans of the anchor's
+/// component.
 inline double worst_error_m(const World& world, const Solution& solution, int component = 0) {
   const Component& part = solution.components.at(component);
   double worst = 0;

@@ -70,7 +70,8 @@ struct Inputs {
   Overlaps overlaps;
 };
 
-Result<void> judge_edges(const Inputs& in, const std::filesystem::path& scans_dir, Evaluation& out, std::set<PairKey>& found) {
+Result<void> judge_edges(const Inputs& in, const std::filesystem::path& scans_dir, Evaluation& out,
+                         std::set<PairKey>& found) {
   std::map<int, std::string> name_of_id;
   for (const ScanRow& row : in.rows) name_of_id[row.id] = row.name;
   std::map<std::string, Eigen::Vector3d> centroids;
@@ -124,7 +125,8 @@ std::vector<PoseError> best_gauge(const std::vector<std::pair<Transform, Transfo
     const Transform common_from_component = anchor_truth * anchor_estimate.inverse();
     std::vector<PoseError> errors;
     for (const auto& [estimate, truth] : estimate_and_truth)
-      errors.push_back(error_of(truth.inverse() * common_from_component * estimate, Transform::Identity(), Eigen::Vector3d::Zero()));
+      errors.push_back(
+          error_of(truth.inverse() * common_from_component * estimate, Transform::Identity(), Eigen::Vector3d::Zero()));
     const double m = median_of(errors, [](const PoseError& e) { return e.m; });
     if (best.empty() || m < best_median) best = std::move(errors), best_median = m;
   }
@@ -137,8 +139,10 @@ void judge_poses(const Inputs& in, const EvaluateOptions& options, Evaluation& o
   std::map<std::string, std::vector<std::pair<Transform, Transform>>> members;
   for (const auto& [name, pose] : in.poses) {
     const auto truth = in.truth.find(name);
-    if (truth == in.truth.end()) out.unknown_placed.push_back(name);
-    else if (component_of.contains(name)) members[component_of[name]].emplace_back(pose, truth->second);
+    if (truth == in.truth.end())
+      out.unknown_placed.push_back(name);
+    else if (component_of.contains(name))
+      members[component_of[name]].emplace_back(pose, truth->second);
   }
   PoseScore score;
   std::vector<PoseError> all;
@@ -162,17 +166,20 @@ void judge_poses(const Inputs& in, const EvaluateOptions& options, Evaluation& o
   out.poses = score;
 }
 
-Result<Overlaps> overlaps_for(const Inputs& in, const std::filesystem::path& scans_dir, const EvaluateOptions& options) {
+Result<Overlaps> overlaps_for(const Inputs& in, const std::filesystem::path& scans_dir,
+                              const EvaluateOptions& options) {
   if (options.overlaps) {
     Result<Overlaps> read = read_overlaps(*options.overlaps);
     if (read && options.voxel_m) read->voxel_m = options.voxel_m;
-    if (read && !read->voxel_m) return fail("has no line '# voxel V'", options.overlaps->string(), "give the evaluation voxel");
+    if (read && !read->voxel_m)
+      return fail("has no line '# voxel V'", options.overlaps->string(), "give the evaluation voxel");
     return read;
   }
   std::optional<double> voxel = options.voxel_m;
   for (const ScanRow& row : in.rows)
     if (!options.voxel_m && row.voxel_m && *row.voxel_m > voxel.value_or(0)) voxel = row.voxel_m;
-  if (!voxel || *voxel <= 0) return fail("the evaluation voxel is not known", scans_dir.string(), "give an overlap file or a voxel");
+  if (!voxel || *voxel <= 0)
+    return fail("the evaluation voxel is not known", scans_dir.string(), "give an overlap file or a voxel");
   return compute_overlaps(scans_dir, {in.truth.begin(), in.truth.end()}, *voxel);
 }
 

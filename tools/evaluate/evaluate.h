@@ -1,9 +1,9 @@
 // A survey's outputs against ground truth: edge precision, recall by overlap, pose errors.
 //
-// Definitions (the same as the independent surveyeval.py): the overlap of two scans is the share of one's voxel-sampled points
-// with a point of the other within 1.5 voxels that faces the same way, the smaller of both directions. A link is right when it is
-// within 2 degrees and 2 evaluation voxels of the truth at the source's centroid. Pose errors are measured at the scan's origin,
-// each component in the gauge of the anchor that gives the smallest median error.
+// Definitions (the same as the independent surveyeval.py): the overlap of two scans is the share of one's voxel-sampled
+// points with a point of the other within 1.5 voxels that faces the same way, the smaller of both directions. A link is
+// right when it is within 2 degrees and 2 evaluation voxels of the truth at the source's centroid. Pose errors are
+// measured at the scan's origin, each component in the gauge of the anchor that gives the smallest median error.
 #pragma once
 
 #include <filesystem>
@@ -19,11 +19,13 @@
 namespace isthmus::evaluate {
 
 struct EvaluateOptions {
-  std::filesystem::path truth;                    ///< "name r00 r01 r02 tx ... tz", scan -> common frame
-  std::optional<std::filesystem::path> overlaps;  ///< first line "# voxel V", then "name name overlap"; absent: computed
-  std::optional<double> voxel_m;    ///< evaluation voxel; absent: the overlap file's, or else the run's own from scans.csv
-  double max_deg = 1.0;             ///< a pose is good within this
-  std::optional<double> max_m;      ///< and this; absent: two evaluation voxels
+  std::filesystem::path truth;  ///< "name r00 r01 r02 tx ... tz", scan -> common frame
+  std::optional<std::filesystem::path>
+      overlaps;  ///< first line "# voxel V", then "name name overlap"; absent: computed
+  std::optional<double>
+      voxel_m;                  ///< evaluation voxel; absent: the overlap file's, or else the run's own from scans.csv
+  double max_deg = 1.0;         ///< a pose is good within this
+  std::optional<double> max_m;  ///< and this; absent: two evaluation voxels
 };
 
 struct WrongEdge {
@@ -41,9 +43,9 @@ struct Band {
 };
 
 struct PoseScore {
-  int placed = 0;   ///< in components of two or more, and in the truth
-  int of = 0;       ///< scans in the truth
-  int within = 0;   ///< within max_deg and max_m
+  int placed = 0;               ///< in components of two or more, and in the truth
+  int of = 0;                   ///< scans in the truth
+  int within = 0;               ///< within max_deg and max_m
   std::vector<int> components;  ///< their sizes
   double median_deg = 0, median_m = 0, max_deg = 0, max_m = 0;
 };

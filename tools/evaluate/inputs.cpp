@@ -37,13 +37,14 @@ Result<void> for_each_line(const std::filesystem::path& path, const char* expect
     ++count;
     const std::vector<std::string> words = words_of(line);
     if (!words.empty() && !take(words))
-      return fail(fmt::format("cannot understand '{}'", line.substr(0, 80)), fmt::format("{}, line {}", path.string(), count),
-                  fmt::format("expected {}", expected));
+      return fail(fmt::format("cannot understand '{}'", line.substr(0, 80)),
+                  fmt::format("{}, line {}", path.string(), count), fmt::format("expected {}", expected));
   }
   return {};
 }
 
-std::optional<std::vector<double>> numbers(const std::vector<std::string>& words, std::size_t first, std::size_t count) {
+std::optional<std::vector<double>> numbers(const std::vector<std::string>& words, std::size_t first,
+                                           std::size_t count) {
   std::vector<double> values;
   for (std::size_t k = first; k < first + count; ++k) {
     const std::optional<double> value = k < words.size() ? number(words[k]) : std::nullopt;
@@ -120,12 +121,18 @@ std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
   };
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
-    if (quoted && c == '"' && i + 1 < text.size() && text[i + 1] == '"') row.back() += text[++i];
-    else if (c == '"') quoted = !quoted;
-    else if (quoted) row.back() += c;
-    else if (c == ',') row.emplace_back();
-    else if (c == '\n') end_row();
-    else if (c != '\r') row.back() += c;
+    if (quoted && c == '"' && i + 1 < text.size() && text[i + 1] == '"')
+      row.back() += text[++i];
+    else if (c == '"')
+      quoted = !quoted;
+    else if (quoted)
+      row.back() += c;
+    else if (c == ',')
+      row.emplace_back();
+    else if (c == '\n')
+      end_row();
+    else if (c != '\r')
+      row.back() += c;
   }
   end_row();
   return rows;
@@ -139,14 +146,16 @@ Result<std::vector<ScanRow>> read_scans_csv(const std::filesystem::path& path) {
     if (rows.empty()) return 0;
     return static_cast<std::size_t>(std::find(rows[0].begin(), rows[0].end(), name) - rows[0].begin());
   };
-  const std::size_t id = column("id"), name = column("name"), component = column("component"), voxel = column("voxel_m");
+  const std::size_t id = column("id"), name = column("name"), component = column("component"),
+                    voxel = column("voxel_m");
   if (rows.empty() || id == rows[0].size() || name == rows[0].size())
     return fail("the columns id and name are missing", path.string(), "is this the scans.csv of a finished run?");
   std::vector<ScanRow> out;
   for (std::size_t k = 1; k < rows.size(); ++k) {
     const std::vector<std::string>& row = rows[k];
     const std::optional<double> value = id < row.size() ? number(row[id]) : std::nullopt;
-    if (!value || name >= row.size()) return fail("cannot understand the row", fmt::format("{}, row {}", path.string(), k + 1));
+    if (!value || name >= row.size())
+      return fail("cannot understand the row", fmt::format("{}, row {}", path.string(), k + 1));
     out.push_back({static_cast<int>(*value), file_name_of(row[name]), component < row.size() ? row[component] : "0",
                    voxel < row.size() ? number(row[voxel]) : std::nullopt});
   }

@@ -25,7 +25,8 @@ std::int32_t KdTree::build(std::uint32_t begin, std::uint32_t end) {
   nodes_.push_back({begin, end, -1, -1, 0, 0});
   if (end - begin <= kLeafSize) return id;
   Eigen::Vector3d low = points_[order_[begin]], high = low;
-  for (std::uint32_t k = begin; k < end; ++k) low = low.cwiseMin(points_[order_[k]]), high = high.cwiseMax(points_[order_[k]]);
+  for (std::uint32_t k = begin; k < end; ++k)
+    low = low.cwiseMin(points_[order_[k]]), high = high.cwiseMax(points_[order_[k]]);
   int axis = 0;
   (high - low).maxCoeff(&axis);
   const std::uint32_t middle = begin + (end - begin) / 2;
@@ -38,14 +39,16 @@ std::int32_t KdTree::build(std::uint32_t begin, std::uint32_t end) {
   return id;
 }
 
-void KdTree::nearest(const Eigen::Vector3d& query, std::size_t k, double max_distance, std::vector<Neighbour>& out) const {
+void KdTree::nearest(const Eigen::Vector3d& query, std::size_t k, double max_distance,
+                     std::vector<Neighbour>& out) const {
   out.clear();
   if (nodes_.empty() || k == 0) return;
   search(0, query, k, max_distance * max_distance, out);
   std::sort(out.begin(), out.end(), nearer);
 }
 
-void KdTree::search(std::int32_t id, const Eigen::Vector3d& query, std::size_t k, double sq_max, std::vector<Neighbour>& out) const {
+void KdTree::search(std::int32_t id, const Eigen::Vector3d& query, std::size_t k, double sq_max,
+                    std::vector<Neighbour>& out) const {
   const Node& node = nodes_[id];
   if (node.left < 0) {
     for (std::uint32_t i = node.begin; i < node.end; ++i) {

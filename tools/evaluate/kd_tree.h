@@ -30,7 +30,8 @@ class KdTree {
     double split = 0;
   };
   std::int32_t build(std::uint32_t begin, std::uint32_t end);
-  void search(std::int32_t node, const Eigen::Vector3d& query, std::size_t k, double sq_max, std::vector<Neighbour>& out) const;
+  void search(std::int32_t node, const Eigen::Vector3d& query, std::size_t k, double sq_max,
+              std::vector<Neighbour>& out) const;
 
   std::span<const Eigen::Vector3d> points_;
   std::vector<std::uint32_t> order_;

@@ -42,7 +42,8 @@ double covered_share(const Surface& a, const Surface& b, const KdTree& tree_of_b
 
 Surface surface_of(const Points& points_in_scan, const Transform& common_from_scan, double voxel_m) {
   Surface surface;
-  for (const Eigen::Vector3d& p : voxel_sampled(points_in_scan, voxel_m)) surface.points.push_back(common_from_scan * p);
+  for (const Eigen::Vector3d& p : voxel_sampled(points_in_scan, voxel_m))
+    surface.points.push_back(common_from_scan * p);
   const KdTree tree(surface.points);
   const Eigen::Vector3d station = common_from_scan.translation();
   surface.normals.resize(surface.points.size());
@@ -74,7 +75,8 @@ Result<Overlaps> compute_overlaps(const std::filesystem::path& scans_dir, const 
   for (std::size_t i = 0; i < sorted.size(); ++i)
     for (std::size_t j = i + 1; j < sorted.size(); ++j)
       overlaps.of[pair_key(sorted[i].first, sorted[j].first)] =
-          std::min(covered_share(surfaces[i], surfaces[j], trees[j], voxel_m), covered_share(surfaces[j], surfaces[i], trees[i], voxel_m));
+          std::min(covered_share(surfaces[i], surfaces[j], trees[j], voxel_m),
+                   covered_share(surfaces[j], surfaces[i], trees[i], voxel_m));
   return overlaps;
 }
 

@@ -24,7 +24,8 @@ io::ScanRef scan_ref(const std::filesystem::path& folder, const std::string& nam
   if (hash == std::string::npos || std::filesystem::exists(ref.path, code)) return ref;
   int index = 0;
   const auto [end, error] = std::from_chars(name.data() + hash + 1, name.data() + name.size(), index);
-  if (error == std::errc() && end == name.data() + name.size()) ref.path = folder / name.substr(0, hash), ref.index = index;
+  if (error == std::errc() && end == name.data() + name.size())
+    ref.path = folder / name.substr(0, hash), ref.index = index;
   return ref;
 }
 
@@ -53,7 +54,8 @@ Result<Points> load_points(const std::filesystem::path& folder, const std::strin
 Points voxel_sampled(const Points& points, double voxel_m) {
   std::vector<std::pair<std::int64_t, std::uint32_t>> keys;
   keys.reserve(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) keys.emplace_back(key_of(points[i], voxel_m), static_cast<std::uint32_t>(i));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    keys.emplace_back(key_of(points[i], voxel_m), static_cast<std::uint32_t>(i));
   std::sort(keys.begin(), keys.end());
   Points out;
   for (std::size_t i = 0; i < keys.size(); ++i)

@@ -11,8 +11,8 @@
 namespace isthmus::evaluate {
 namespace {
 
-using isthmus::testing::MadeSurvey;
 using isthmus::testing::kEvaluationVoxel;
+using isthmus::testing::MadeSurvey;
 using isthmus::testing::shifted;
 
 EvaluateOptions options_for(const MadeSurvey& survey) {
@@ -25,8 +25,8 @@ TEST(Evaluate, CountsRightAndWrongEdgesByOverlap) {
   const MadeSurvey survey("evaluate_edges", 4);
   Transform turned = survey.truth_of(0, 2);
   turned.linear() = turned.linear() * rotation_from_vector({0, 0, 0.04});  // 2.3 degrees
-  survey.write_outputs({{0, 1, shifted(survey.truth_of(0, 1), 0.39)},   // inside two voxels of 0.2 m
-                        {1, 2, shifted(survey.truth_of(1, 2), 0.41)},   // outside
+  survey.write_outputs({{0, 1, shifted(survey.truth_of(0, 1), 0.39)},      // inside two voxels of 0.2 m
+                        {1, 2, shifted(survey.truth_of(1, 2), 0.41)},      // outside
                         {0, 2, turned},
                         {2, 3, survey.truth_of(2, 3)}},
                        {}, {0, 0, 0, 0});
@@ -57,7 +57,8 @@ TEST(Evaluate, EachComponentHasItsOwnGauge) {
   const auto& truth = survey.common_from_scan;
   Transform off = truth[2];
   off.translation().y() += 0.5;
-  survey.write_outputs({}, {{0, truth[0]}, {1, truth[1]}, {2, off}, {3, gauge * truth[3]}, {4, gauge * truth[4]}}, {0, 0, 0, 1, 1});
+  survey.write_outputs({}, {{0, truth[0]}, {1, truth[1]}, {2, off}, {3, gauge * truth[3]}, {4, gauge * truth[4]}},
+                       {0, 0, 0, 1, 1});
   const Result<Evaluation> e = evaluate(survey.out, survey.scans, options_for(survey));
   ASSERT_TRUE(e) << e.error().text();
   ASSERT_TRUE(e->poses);

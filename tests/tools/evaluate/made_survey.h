@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fmt/format.h>
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -24,7 +24,8 @@ inline std::string pose_words(const Transform& t) {
 
 inline std::string g2o_words(const Transform& t) {
   const Eigen::Quaterniond q(t.linear());
-  return fmt::format("{} {} {} {} {} {} {}", t.translation().x(), t.translation().y(), t.translation().z(), q.x(), q.y(), q.z(), q.w());
+  return fmt::format("{} {} {} {} {} {} {}", t.translation().x(), t.translation().y(), t.translation().z(), q.x(),
+                     q.y(), q.z(), q.w());
 }
 
 /// Stations along the x axis, each sees a stretch of ground and a wall; neighbours overlap.
@@ -53,7 +54,9 @@ class MadeSurvey {
       truth << names[i] << pose_words(pose) << '\n';
     }
   }
-  [[nodiscard]] Transform truth_of(int target, int source) const { return common_from_scan[target].inverse() * common_from_scan[source]; }
+  [[nodiscard]] Transform truth_of(int target, int source) const {
+    return common_from_scan[target].inverse() * common_from_scan[source];
+  }
 
   /// Outputs: edges (target, source, measurement) and poses in the frame of scan 0.
   struct Edge {
@@ -66,10 +69,11 @@ class MadeSurvey {
     table << "id,name,status,component,points,voxel_m\n";
     for (std::size_t i = 0; i < names.size(); ++i) {
       const bool placed = component[i] >= 0;
-      table << i << ",\"sub/" << names[i] << "\"," << (placed ? "placed," : "failed,") << (placed ? std::to_string(component[i]) : "")
-            << ",10," << kEvaluationVoxel << '\n';
+      table << i << ",\"sub/" << names[i] << "\"," << (placed ? "placed," : "failed,")
+            << (placed ? std::to_string(component[i]) : "") << ",10," << kEvaluationVoxel << '\n';
     }
-    for (const Edge& e : edges) g2o << "EDGE_SE3:QUAT " << e.target << ' ' << e.source << ' ' << g2o_words(e.target_from_source) << " 1\n";
+    for (const Edge& e : edges)
+      g2o << "EDGE_SE3:QUAT " << e.target << ' ' << e.source << ' ' << g2o_words(e.target_from_source) << " 1\n";
     for (const auto& [i, pose] : poses) text << "sub/" << names[i] << pose_words(pose) << '\n';
   }
 

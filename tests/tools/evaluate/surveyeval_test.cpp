@@ -36,10 +36,14 @@ std::optional<std::string> output_of(const std::string& command) {
 class AgreesWithSurveyeval : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(script_)) GTEST_SKIP() << "no " << script_ << ": set ISTHMUS_SHARED to the shared folder";
-    if (!output_of("/usr/bin/python3 -c 'import scipy'")) GTEST_SKIP() << "/usr/bin/python3 has no scipy: apt-get install python3-scipy";
+    if (!std::filesystem::exists(script_))
+      GTEST_SKIP() << "no " << script_ << ": set ISTHMUS_SHARED to the shared folder";
+    if (!output_of("/usr/bin/python3 -c 'import scipy'"))
+      GTEST_SKIP() << "/usr/bin/python3 has no scipy: apt-get install python3-scipy";
   }
-  [[nodiscard]] std::string python(const std::string& arguments) const { return "/usr/bin/python3 " + script_.string() + ' ' + arguments; }
+  [[nodiscard]] std::string python(const std::string& arguments) const {
+    return "/usr/bin/python3 " + script_.string() + ' ' + arguments;
+  }
 
   std::filesystem::path script_ = shared() / "tools/surveyeval.py";
 };
@@ -47,7 +51,8 @@ class AgreesWithSurveyeval : public ::testing::Test {
 void expect_same_overlaps(const Overlaps& ours, const Overlaps& theirs) {
   ASSERT_EQ(ours.of.size(), theirs.of.size());
   // Theirs are rounded to four digits; normals of points without a unique plane may turn either way.
-  for (const auto& [pair, overlap] : theirs.of) EXPECT_NEAR(ours.of.at(pair), overlap, 0.003) << pair.first << ' ' << pair.second;
+  for (const auto& [pair, overlap] : theirs.of)
+    EXPECT_NEAR(ours.of.at(pair), overlap, 0.003) << pair.first << ' ' << pair.second;
 }
 
 void expect_same_scores(const Evaluation& ours, const nlohmann::json& theirs) {
@@ -55,7 +60,8 @@ void expect_same_scores(const Evaluation& ours, const nlohmann::json& theirs) {
   EXPECT_EQ(ours.right, theirs["right"].get<int>());
   EXPECT_EQ(static_cast<int>(ours.wrong.size()), theirs["wrong"].get<int>());
   EXPECT_EQ(ours.placeable, theirs["placeable"].get<int>());
-  for (const Band& band : ours.bands) EXPECT_EQ(theirs["recall_by_overlap"].value(band.name, ""), fmt::format("{}/{}", band.found, band.pairs));
+  for (const Band& band : ours.bands)
+    EXPECT_EQ(theirs["recall_by_overlap"].value(band.name, ""), fmt::format("{}/{}", band.found, band.pairs));
   EXPECT_EQ(ours.bands.size(), theirs["recall_by_overlap"].size());
   ASSERT_EQ(ours.poses.has_value(), !theirs["poses"].is_null());
   if (!ours.poses) return;
@@ -72,7 +78,8 @@ void expect_same_scores(const Evaluation& ours, const nlohmann::json& theirs) {
 
 TEST_F(AgreesWithSurveyeval, OnAMadeSurvey) {
   const MadeSurvey survey("evaluate_against_surveyeval", 6);
-  ASSERT_TRUE(output_of(python(fmt::format("overlaps {} {}", survey.scans.string(), isthmus::testing::kEvaluationVoxel))));
+  ASSERT_TRUE(
+      output_of(python(fmt::format("overlaps {} {}", survey.scans.string(), isthmus::testing::kEvaluationVoxel))));
   const auto theirs = read_overlaps(survey.scans / "overlaps.gt.txt");
   ASSERT_TRUE(theirs);
   const auto truth = read_poses(survey.scans / "poses.gt.txt");

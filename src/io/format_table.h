@@ -16,8 +16,8 @@ struct Format {
   Result<std::vector<ScanRef>> (*scans)(const std::filesystem::path& path) = nullptr;
 };
 
-/// In the order in which one is preferred when the same scan lies there in two formats: what stores the station and the pose
-/// first, then full precision, then text.
+/// In the order in which one is preferred when the same scan lies there in two formats: what stores the station and the
+/// pose first, then full precision, then text.
 std::span<const Format> formats();
 
 /// The format by the path's extension (case does not matter); an error 'unsupported format' otherwise.

@@ -82,8 +82,8 @@ Result<std::string_view> InputFile::peek(std::size_t n) {
 Result<void> InputFile::read_at(std::uint64_t offset, void* out, std::size_t n) const {
   auto got = read_some(offset, static_cast<char*>(out), n);
   if (!got) return tl::unexpected(std::move(got.error()));
-  if (*got < n) return fail(fmt::format("the file ends, {} more bytes were expected", n - *got),
-                            at_byte(name_, offset + *got));
+  if (*got < n)
+    return fail(fmt::format("the file ends, {} more bytes were expected", n - *got), at_byte(name_, offset + *got));
   return {};
 }
 

@@ -12,11 +12,12 @@
 namespace isthmus::io {
 
 struct ScanSummary {
-  ScanHeader header;                          ///< as after the last point: with the notes of the whole reading
-  std::uint64_t num_read = 0;                 ///< points delivered (without the no-return lines of PTX)
-  std::uint64_t num_finite = 0;               ///< of them with three finite coordinates
-  std::optional<Eigen::AlignedBox3d> extent_in_scan;  ///< of the finite points, metres as stored; absent if there are none
-  std::optional<double> spacing_m;            ///< median distance to the nearest other point, from 256 places of the scan
+  ScanHeader header;             ///< as after the last point: with the notes of the whole reading
+  std::uint64_t num_read = 0;    ///< points delivered (without the no-return lines of PTX)
+  std::uint64_t num_finite = 0;  ///< of them with three finite coordinates
+  std::optional<Eigen::AlignedBox3d>
+      extent_in_scan;               ///< of the finite points, metres as stored; absent if there are none
+  std::optional<double> spacing_m;  ///< median distance to the nearest other point, from 256 places of the scan
   std::optional<std::pair<float, float>> intensity_range;  ///< absent without (finite) intensities
 };
 

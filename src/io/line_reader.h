@@ -20,7 +20,7 @@ class LineReader {
   /// Skips `count` lines of any length; returns how many there were (fewer at the end of the file).
   Result<std::uint64_t> skip(std::uint64_t count);
 
-  [[nodiscard]] std::uint64_t number() const { return next_line_ - 1; }       ///< of the line returned last
+  [[nodiscard]] std::uint64_t number() const { return next_line_ - 1; }        ///< of the line returned last
   [[nodiscard]] std::uint64_t next_offset() const { return file_->offset(); }  ///< byte where the next line starts
 
  private:

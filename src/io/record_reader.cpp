@@ -61,8 +61,8 @@ Result<std::vector<char>> RecordReader::sample_bytes(std::size_t max_records) co
   for (std::size_t w = 0; w < windows; ++w) {
     const auto begin = static_cast<std::uint64_t>(static_cast<unsigned __int128>(total) * w / windows);
     const auto end = static_cast<std::uint64_t>(static_cast<unsigned __int128>(total) * (w + 1) / windows);
-    const std::size_t length =
-        static_cast<std::size_t>(std::min<std::uint64_t>(end - begin, std::max<std::size_t>(1, kProbeWindowBytes / size)));
+    const std::size_t length = static_cast<std::size_t>(
+        std::min<std::uint64_t>(end - begin, std::max<std::size_t>(1, kProbeWindowBytes / size)));
     const std::size_t share = std::min(length, picks * (w + 1) / windows - picks * w / windows);
     window.resize(length * size);
     auto read = file_.read_at(block_.begin_byte + begin * size, window.data(), window.size());

@@ -13,9 +13,9 @@ struct RecordBlock {
   std::uint64_t num_records = 0;
 };
 
-/// Checks the claimed number of records against the file's size ("the header says N points, the file holds M"), looks at
-/// a few records to choose local origin and colour scale, and returns a reader. `header` comes with format, counts and
-/// station filled in.
+/// Checks the claimed number of records against the file's size ("the header says N points, the file holds M"), looks
+/// at a few records to choose local origin and colour scale, and returns a reader. `header` comes with format, counts
+/// and station filled in.
 OpenedScan open_records(InputFile file, ScanHeader header, const RecordLayout& layout, const RecordBlock& block);
 
 /// How a claimed count that the file cannot hold reads as an error, or nothing if it fits.

@@ -24,7 +24,8 @@ bool is_hidden(const fs::path& path) { return path.filename().string().starts_wi
 // Files of the project's own kinds that end in .txt.
 bool is_companion(const fs::path& path) {
   const std::string name = lower_case(path.filename().string());
-  return name.ends_with(".gt.txt") || ((name.starts_with("poses") || name.starts_with("overlaps")) && name.ends_with(".txt"));
+  return name.ends_with(".gt.txt") ||
+         ((name.starts_with("poses") || name.starts_with("overlaps")) && name.ends_with(".txt"));
 }
 
 bool is_loose_text(const fs::path& path) {
@@ -49,7 +50,9 @@ class Lister {
   ScanListing finish();
 
  private:
-  [[nodiscard]] std::string name_of(const fs::path& path) const { return scan_name(path.lexically_relative(base_), {}); }
+  [[nodiscard]] std::string name_of(const fs::path& path) const {
+    return scan_name(path.lexically_relative(base_), {});
+  }
   void add_error(const fs::path& path, Error error) {
     listing_.scans.push_back({{path, 0, name_of(path)}, std::move(error)});
   }
@@ -112,7 +115,8 @@ void Lister::take_by_stem() {
       return std::pair(preference_of(a), a) < std::pair(preference_of(b), b);
     });
     for (std::size_t i = 1; i < files.size(); ++i) {
-      listing_.notes.push_back(fmt::format("{}: not used, {} is taken for the same scan", name_of(files[i]), name_of(files[0])));
+      listing_.notes.push_back(
+          fmt::format("{}: not used, {} is taken for the same scan", name_of(files[i]), name_of(files[0])));
     }
     add_file(files[0]);
   }

@@ -7,8 +7,8 @@
 
 namespace isthmus::io {
 
-/// The path with '/' between its parts, white space, control bytes, '#' and '%' percent-encoded; "#k" behind it if `index` is
-/// given (the file holds several scans; k counts from 0).
+/// The path with '/' between its parts, white space, control bytes, '#' and '%' percent-encoded; "#k" behind it if
+/// `index` is given (the file holds several scans; k counts from 0).
 std::string scan_name(const std::filesystem::path& relative_path, std::optional<int> index);
 
 /// Undoes the percent-encoding; malformed escapes stay as they are.

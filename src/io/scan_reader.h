@@ -1,8 +1,8 @@
 // Opening scans: a path becomes one or more scans, a scan becomes chunks of points in its own frame.
 //
 // Frames. "scan" is the frame of the coordinates as stored in the file (double). "local" is that frame shifted by
-// `local_origin_in_scan`, chosen by the reader from the header or the first points so that floats lose nothing (zero for
-// formats that already store small coordinates): p_in_scan = p_in_local.cast<double>() + local_origin_in_scan.
+// `local_origin_in_scan`, chosen by the reader from the header or the first points so that floats lose nothing (zero
+// for formats that already store small coordinates): p_in_scan = p_in_local.cast<double>() + local_origin_in_scan.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,8 +29,8 @@ struct FilePlace {
 /// One scan of one file.
 struct ScanRef {
   std::filesystem::path path;
-  int index = 0;     ///< which scan of the file, from 0
-  std::string name;  ///< path relative to the input folder with extension, "#k" when the file holds several, percent-encoded
+  int index = 0;  ///< which scan of the file, from 0
+  std::string name;  ///< path relative to the input folder, "#k" (= index) if the file holds several, percent-encoded
   FilePlace place = {};  ///< filled in by scans_of_file for formats that need it; never needed from a caller
 };
 

@@ -64,7 +64,8 @@ std::string ply_header(std::size_t count, const Shape& shape, const WriteOptions
   std::string header = "ply\nformat binary_little_endian 1.0\n";
   for (const std::string& comment : options.comments) header += "comment " + comment + "\n";
   header += fmt::format("element vertex {}\n", count);
-  for (const char axis : {'x', 'y', 'z'}) header += fmt::format("property {} {}\n", shape.doubles ? "double" : "float", axis);
+  for (const char axis : {'x', 'y', 'z'})
+    header += fmt::format("property {} {}\n", shape.doubles ? "double" : "float", axis);
   if (shape.intensity) header += "property float intensity\n";
   if (shape.colour) header += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
   return header + "end_header\n";
@@ -84,9 +85,10 @@ std::string pcd_header(std::size_t count, const Shape& shape, const WriteOptions
   if (shape.intensity) add("intensity", "F");
   if (shape.colour) add("rgb", "U");
   const Eigen::Vector3d station = options.station_in_scan.value_or(Eigen::Vector3d::Zero());
-  return header + fmt::format("VERSION 0.7\nFIELDS {}\nSIZE {}\nTYPE {}\nCOUNT {}\nWIDTH {}\nHEIGHT 1\nVIEWPOINT {} {} {} 1 "
-                              "0 0 0\nPOINTS {}\nDATA binary\n",
-                              names, sizes, types, counts, count, station.x(), station.y(), station.z(), count);
+  return header + fmt::format(
+                      "VERSION 0.7\nFIELDS {}\nSIZE {}\nTYPE {}\nCOUNT {}\nWIDTH {}\nHEIGHT 1\nVIEWPOINT {} {} {} 1 "
+                      "0 0 0\nPOINTS {}\nDATA binary\n",
+                      names, sizes, types, counts, count, station.x(), station.y(), station.z(), count);
 }
 
 Result<void> check(const std::filesystem::path& path, const PointChunk& points) {

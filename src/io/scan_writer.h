@@ -18,9 +18,9 @@ struct WriteOptions {
   std::vector<std::string> comments;               ///< one line each, into the header of PLY and PCD
 };
 
-/// Writes the points (and intensity and colour, if present) to `path` in pieces; the file appears by rename when it is whole.
-/// Fails if the extension is none of ply, pcd, xyz, or if an optional array is neither empty nor as long as the points.
-/// XYZ columns: x y z [intensity] [r g b], coordinates with 6 decimals.
+/// Writes the points (and intensity and colour, if present) to `path` in pieces; the file appears by rename when it is
+/// whole. Fails if the extension is none of ply, pcd, xyz, or if an optional array is neither empty nor as long as the
+/// points. XYZ columns: x y z [intensity] [r g b], coordinates with 6 decimals.
 Result<void> write_scan(const std::filesystem::path& path, const PointChunk& points, const WriteOptions& options = {});
 
 }  // namespace isthmus::io

@@ -11,8 +11,8 @@
 
 namespace isthmus::io {
 
-/// Anchors are points of the scan (from a probe); every streamed point is compared with the anchors near it only. The anchors
-/// themselves and duplicates of them (distance zero) do not count.
+/// Anchors are points of the scan (from a probe); every streamed point is compared with the anchors near it only. The
+/// anchors themselves and duplicates of them (distance zero) do not count.
 class SpacingEstimator {
  public:
   explicit SpacingEstimator(const PointChunk& anchors);

@@ -9,9 +9,7 @@
 namespace isthmus::io {
 namespace {
 
-bool is_colour(FieldRole role) {
-  return role == FieldRole::red || role == FieldRole::green || role == FieldRole::blue;
-}
+bool is_colour(FieldRole role) { return role == FieldRole::red || role == FieldRole::green || role == FieldRole::blue; }
 
 void put(FieldRole role, double value, double colour_scale, TextPoint& point) {
   switch (role) {
@@ -37,7 +35,8 @@ void put(FieldRole role, double value, double colour_scale, TextPoint& point) {
     }
     case FieldRole::packed_rgb: {  // PCL writes the colour's bits as a float, or as the integer they are
       const bool whole = value >= 1.0 && value == std::floor(value) && value <= 4294967295.0;
-      const auto bits = whole ? static_cast<std::uint32_t>(value) : std::bit_cast<std::uint32_t>(static_cast<float>(value));
+      const auto bits =
+          whole ? static_cast<std::uint32_t>(value) : std::bit_cast<std::uint32_t>(static_cast<float>(value));
       point.colour = {static_cast<std::uint8_t>(bits >> 16), static_cast<std::uint8_t>(bits >> 8),
                       static_cast<std::uint8_t>(bits)};
       break;

@@ -17,8 +17,8 @@ struct TextColumns {
   [[nodiscard]] bool has_colour() const;
 };
 
-/// Parses lines with these columns. Empty lines and lines that start with '#', '//', '%', '!' are skipped; a line that lacks a
-/// wanted column or holds something else there than a number is bad.
+/// Parses lines with these columns. Empty lines and lines that start with '#', '//', '%', '!' are skipped; a line that
+/// lacks a wanted column or holds something else there than a number is bad.
 LineParser column_parser(const TextColumns& columns);
 
 /// The number at the start of `field` (quotes around it allowed) must be all there is in it.

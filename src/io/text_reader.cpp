@@ -38,7 +38,8 @@ class TextReader final : public ProbingReader {
   Result<std::vector<TextPoint>> front(std::size_t max_points);
   Result<std::vector<TextPoint>> windows(std::size_t max_points, std::uint64_t end_byte) const;
   Result<std::uint64_t> end_of_points();
-  void pick_from_window(std::string_view bytes, bool starts_a_line, std::size_t picks, std::vector<TextPoint>& out) const;
+  void pick_from_window(std::string_view bytes, bool starts_a_line, std::size_t picks,
+                        std::vector<TextPoint>& out) const;
   void append(const TextPoint& point, PointChunk& chunk) const;
 
   InputFile file_;
@@ -46,7 +47,7 @@ class TextReader final : public ProbingReader {
   LineParser parser_;
   TextBlock block_;
   LineReader lines_{file_};
-  std::uint64_t num_lines_ = 0;       // lines with points so far, no-returns too
+  std::uint64_t num_lines_ = 0;  // lines with points so far, no-returns too
   std::uint64_t num_no_returns_ = 0;
   bool ended_ = false;
 };
@@ -89,8 +90,9 @@ Result<void> TextReader::check_end() {
   }
   if (num_no_returns_ > 0) header_.notes.push_back(fmt::format("{} no-return lines (0 0 0) left out", num_no_returns_));
   if (block_.only_points && block_.num_lines && lines_.next_offset() < block_.end_byte) {
-    header_.notes.push_back(fmt::format("the file goes on behind the {} points of its header (line {}): the rest is ignored",
-                                        *block_.num_lines, lines_.number() + 1));
+    header_.notes.push_back(
+        fmt::format("the file goes on behind the {} points of its header (line {}): the rest is ignored",
+                    *block_.num_lines, lines_.number() + 1));
   }
   return {};
 }
@@ -160,7 +162,8 @@ Result<std::vector<TextPoint>> TextReader::windows(std::size_t max_points, std::
   return points;
 }
 
-// Where the lines with points end, by counting lines if other lines follow. Lines without points only make it too early.
+// Where the lines with points end, by counting lines if other lines follow. Lines without points only make it too
+// early.
 Result<std::uint64_t> TextReader::end_of_points() {
   if (block_.only_points || !block_.num_lines) return block_.end_byte;
   file_.seek(block_.begin_byte);

@@ -15,7 +15,8 @@ TEST_F(Inspect, SaysWhatAScanHolds) {
   PointChunk grid;  // a tilted plane with points every 0.05 m, and things that must not disturb
   for (int i = 0; i < 200; ++i) {
     for (int j = 0; j < 300; ++j) {
-      grid.points.emplace_back(0.05F * static_cast<float>(i), 0.04F * static_cast<float>(j), 0.03F * static_cast<float>(j));
+      grid.points.emplace_back(0.05F * static_cast<float>(i), 0.04F * static_cast<float>(j),
+                               0.03F * static_cast<float>(j));
     }
   }
   grid.points.emplace_back(std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F);

@@ -9,17 +9,18 @@ namespace {
 
 class Pcd : public IoTest {};
 
-std::string header(const std::string& fields, const std::string& size, const std::string& type, const std::string& count,
-                   std::uint64_t points, const std::string& data, const std::string& viewpoint = "0 0 0 1 0 0 0") {
+std::string header(const std::string& fields, const std::string& size, const std::string& type,
+                   const std::string& count, std::uint64_t points, const std::string& data,
+                   const std::string& viewpoint = "0 0 0 1 0 0 0") {
   return "# .PCD v0.7\nVERSION 0.7\nFIELDS " + fields + "\nSIZE " + size + "\nTYPE " + type + "\nCOUNT " + count +
-         "\nWIDTH " + std::to_string(points) + "\nHEIGHT 1\nVIEWPOINT " + viewpoint + "\nPOINTS " + std::to_string(points) +
-         "\nDATA " + data + "\n";
+         "\nWIDTH " + std::to_string(points) + "\nHEIGHT 1\nVIEWPOINT " + viewpoint + "\nPOINTS " +
+         std::to_string(points) + "\nDATA " + data + "\n";
 }
 
 TEST_F(Pcd, ReadsAsciiWithWideFieldsAndViewpoint) {
-  const auto scan = read_whole(write(
-      "a.pcd", header("h x y z intensity", "4 4 4 4 4", "F F F F F", "2 1 1 1 1", 2, "ascii", "1 2 3 1 0 0 0") +
-                   "9 9 1 2 3 0.5\r\n9 9 nan nan nan 0.25\r\n"));
+  const auto scan = read_whole(
+      write("a.pcd", header("h x y z intensity", "4 4 4 4 4", "F F F F F", "2 1 1 1 1", 2, "ascii", "1 2 3 1 0 0 0") +
+                         "9 9 1 2 3 0.5\r\n9 9 nan nan nan 0.25\r\n"));
   ASSERT_TRUE(scan) << error_of(scan);
   ASSERT_EQ(scan->p_in_scan.size(), 2U);
   expect_near(scan->p_in_scan[0], {1, 2, 3}, 0);
@@ -67,7 +68,8 @@ TEST_F(Pcd, ReadsCompressed) {
   for (int f = 0, offset = 0; f < 5; offset += sizes[f++]) {
     for (int i = 0; i < 3; ++i) columns += fields_of_point(i).substr(offset, sizes[f]);
   }
-  const std::string text = header("x y z s rgb", "4 4 4 2 4", "F F F I F", "1 1 1 2 1", 3, "binary_compressed") + compressed(columns);
+  const std::string text =
+      header("x y z s rgb", "4 4 4 2 4", "F F F I F", "1 1 1 2 1", 3, "binary_compressed") + compressed(columns);
   const auto path = write("a.pcd", text);
   expect_three_points(read_whole(path));
   EXPECT_EQ(probe_scan({path, 0, {}}, 2)->points.size(), 2U);
@@ -85,10 +87,13 @@ TEST_F(Pcd, WrongCountsAreRefused) {
   };
   EXPECT_NE(error(2, "binary", body + "12345").find("the header says 2 points, the file holds 1"), std::string::npos);
   EXPECT_NE(error(99999999999999999ULL, "binary", body).find("the file holds 1"), std::string::npos);
-  EXPECT_NE(error(99999999999999999ULL, "ascii", "1 2 3\n").find("the header says 99999999999999999"), std::string::npos);
-  EXPECT_NE(error(99999999999999999ULL, "binary_compressed", compressed(body)).find("the header says"), std::string::npos);
-  EXPECT_NE(error(357913941, "binary_compressed", bytes_of_value(12U) + bytes_of_value(4294967292U) + body).find("too short"),
+  EXPECT_NE(error(99999999999999999ULL, "ascii", "1 2 3\n").find("the header says 99999999999999999"),
             std::string::npos);
+  EXPECT_NE(error(99999999999999999ULL, "binary_compressed", compressed(body)).find("the header says"),
+            std::string::npos);
+  EXPECT_NE(
+      error(357913941, "binary_compressed", bytes_of_value(12U) + bytes_of_value(4294967292U) + body).find("too short"),
+      std::string::npos);
   EXPECT_NE(error(2, "ascii", "1 2 3\n").find("the header says 2 points, the file holds 1"), std::string::npos);
   EXPECT_NE(error(0, "ascii", "").find("holds no points"), std::string::npos);
 }
@@ -100,7 +105,8 @@ TEST_F(Pcd, BadHeadersAreNamed) {
   EXPECT_NE(error(header("x y z", "4 4", "F F F", "1 1 1", 1, "ascii")).find("3 FIELDS, 2 SIZE"), std::string::npos);
   EXPECT_NE(error(header("x y z", "4 4 3", "F F F", "1 1 1", 1, "ascii")).find("unknown type 'F3'"), std::string::npos);
   EXPECT_NE(error(header("a b z", "4 4 4", "F F F", "1 1 1", 1, "ascii")).find("no fields x and y"), std::string::npos);
-  EXPECT_NE(error(header("x y z", "4 4 4", "F F F", "1 1 1", 1, "zip")).find("unknown DATA kind 'zip'"), std::string::npos);
+  EXPECT_NE(error(header("x y z", "4 4 4", "F F F", "1 1 1", 1, "zip")).find("unknown DATA kind 'zip'"),
+            std::string::npos);
 }
 
 }  // namespace

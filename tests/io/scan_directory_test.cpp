@@ -25,11 +25,14 @@ using Strings = std::vector<std::string>;
 const std::string kPtx = "1\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n1 2 3 0.5\n";
 
 TEST_F(Directory, TakesScansByTheRulesInAFixedOrder) {
-  for (const char* name : {"b.xyz", "a scan.xyz", "sub/c.xyz", "d.XYZ", "s10.xyz", "s2.txt", "odd#1%.xyz"}) write(name, "1 2 3\n");
+  for (const char* name : {"b.xyz", "a scan.xyz", "sub/c.xyz", "d.XYZ", "s10.xyz", "s2.txt", "odd#1%.xyz"})
+    write(name, "1 2 3\n");
   write("b.ply", "not read when listing");
   write("poses.txt", "a 1 0 0 0\n");
   for (const char* name : {"poses_refined.txt", "overlaps.gt.txt", "x.gt.txt", "Overlaps1.txt"}) write(name, "1 2 3\n");
-  for (const char* name : {"a.pose", "a.frames", "bun.conf", "resolved.yaml", "report.html", ".hidden.xyz", ".git/x.xyz"}) write(name, "1 2 3\n");
+  for (const char* name :
+       {"a.pose", "a.frames", "bun.conf", "resolved.yaml", "report.html", ".hidden.xyz", ".git/x.xyz"})
+    write(name, "1 2 3\n");
   write("scans.csv", "id,name,points\n0,a,3\n");
   write("readme.txt", "Seven stations.\n");
   write("points.csv", "x,y,z\n1,2,3\n");
@@ -38,8 +41,8 @@ TEST_F(Directory, TakesScansByTheRulesInAFixedOrder) {
   write("two.ptx", kPtx + kPtx);
   const auto listing = list_scans({folder});
   ASSERT_TRUE(listing) << error_of(listing);
-  EXPECT_EQ(names(*listing), (Strings{"a%20scan.xyz", "b.ply", "d.XYZ", "lone.e57 !", "odd%231%25.xyz", "points.csv", "s10.xyz",
-                                      "s2.txt", "sub/c.xyz", "two.ptx#0", "two.ptx#1"}));
+  EXPECT_EQ(names(*listing), (Strings{"a%20scan.xyz", "b.ply", "d.XYZ", "lone.e57 !", "odd%231%25.xyz", "points.csv",
+                                      "s10.xyz", "s2.txt", "sub/c.xyz", "two.ptx#0", "two.ptx#1"}));
   EXPECT_NE(listing->scans[3].error->text().find("unsupported format"), std::string::npos);
   const auto noted = [&](const std::string& text) {
     return std::find(listing->notes.begin(), listing->notes.end(), text) != listing->notes.end();
@@ -59,7 +62,8 @@ TEST_F(Directory, NamedFilesAreTakenAsNamedWhateverTheirOrder) {
   const auto other = list_scans({a, a, c, folder / "two" / "missing.pcd", b});
   EXPECT_EQ(names(*listing), names(*other));
   EXPECT_EQ(names(*list_scans({a})), Strings{"a.xyz"});
-  EXPECT_EQ(names(*list_scans({folder / "one" / "", folder / "two"})), (Strings{"one/a.xyz", "two/a.ply !", "two/deep/b.xyz"}));
+  EXPECT_EQ(names(*list_scans({folder / "one" / "", folder / "two"})),
+            (Strings{"one/a.xyz", "two/a.ply !", "two/deep/b.xyz"}));
 }
 
 TEST_F(Directory, SkipsTheOutputFolderAndNotesLinkedFolders) {
@@ -94,10 +98,10 @@ TEST_F(Directory, ResolvesNamesOfFilesAndOfScansInThem) {
 
 TEST(SharedDirectories, EverySetListsItsScansAndNothingElse) {
   ISTHMUS_SHARED_DATA_OR_SKIP(data);
-  const std::pair<const char*, std::size_t> sets[] = {{"tls_eth_facade", 7},  {"tls_3dtk_dat", 3},    {"nclt_a", 16},
-                                                      {"kitti_00_a", 5},      {"newer_college_01", 5}, {"stanford_bunny", 10},
-                                                      {"stanford_dragon", 15}, {"fragments_redkitchen", 3}, {"rgbd_bunny_views", 12},
-                                                      {"object_hippo", 2}};
+  const std::pair<const char*, std::size_t> sets[] = {
+      {"tls_eth_facade", 7},    {"tls_3dtk_dat", 3},    {"nclt_a", 16},          {"kitti_00_a", 5},
+      {"newer_college_01", 5},  {"stanford_bunny", 10}, {"stanford_dragon", 15}, {"fragments_redkitchen", 3},
+      {"rgbd_bunny_views", 12}, {"object_hippo", 2}};
   for (const auto& [name, count] : sets) {
     const auto listing = list_scans({data / name});
     ASSERT_TRUE(listing) << error_of(listing);

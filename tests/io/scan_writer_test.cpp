@@ -49,11 +49,13 @@ TEST_F(Writer, AShiftedScanIsWrittenInDoubles) {
 }
 
 TEST_F(Writer, RefusesUnknownExtensionsAndMismatchedArraysAndLeavesNothing) {
-  EXPECT_NE(error_of(write_scan(folder / "scan.las", some_points(1))).find("cannot be written as '.las'"), std::string::npos);
+  EXPECT_NE(error_of(write_scan(folder / "scan.las", some_points(1))).find("cannot be written as '.las'"),
+            std::string::npos);
   PointChunk points = some_points(3);
   points.intensity.pop_back();
   EXPECT_NE(error_of(write_scan(folder / "scan.ply", points)).find("do not belong together"), std::string::npos);
-  EXPECT_NE(error_of(write_scan(folder / "missing" / "scan.ply", some_points(1))).find("cannot be created"), std::string::npos);
+  EXPECT_NE(error_of(write_scan(folder / "missing" / "scan.ply", some_points(1))).find("cannot be created"),
+            std::string::npos);
   EXPECT_TRUE(std::filesystem::is_empty(folder));
 }
 

@@ -7,7 +7,9 @@ namespace {
 
 class Text : public IoTest {
  protected:
-  Result<WholeScan> read(const std::string& name, const std::string& text) const { return read_whole(write(name, text)); }
+  Result<WholeScan> read(const std::string& name, const std::string& text) const {
+    return read_whole(write(name, text));
+  }
   std::string error(const std::string& name, const std::string& text) const { return error_of(read(name, text)); }
 };
 
@@ -19,7 +21,8 @@ TEST_F(Text, DelimitersAndColumnsAreFoundAndStated) {
   const Case cases[] = {
       {"1 2 3\n4 5 6\n", "columns x y z, delimiter blank by their values"},
       {"1\t2\t3\t0.5\n4\t5\t6\t0.25\n", "columns x y z intensity, delimiter blank by their values"},
-      {"1,2,3,0.5,255,0,7\n4, 5, 6, 0.25, 1, 2, 3\n", "columns x y z intensity red green blue, delimiter ',' by their values"},
+      {"1,2,3,0.5,255,0,7\n4, 5, 6, 0.25, 1, 2, 3\n",
+       "columns x y z intensity red green blue, delimiter ',' by their values"},
       {"1;2;3;10;20;30\n4;5;6;40;50;60\n", "columns x y z red green blue, delimiter ';' by their values"},
       {"1 2 3 0.6 0.8 0\n4 5 6 0 0 -1\n", "columns x y z, delimiter blank (nx ny nz not used) by their values"},
       {"1 2 3 10 20 30 255\n4 5 6 9 9 9 255\n", "columns x y z red green blue, delimiter blank by their values"},
@@ -36,7 +39,8 @@ TEST_F(Text, DelimitersAndColumnsAreFoundAndStated) {
 }
 
 TEST_F(Text, NamedColumnsMayStandAnywhere) {
-  const auto scan = read("a.csv", "\xEF\xBB\xBF\"time\",\"Z\",\"Intensity\",\"X\",\"Y\",R,G,B\r\n0.1,3,7,1,2,1.0,0,0.5\r\n");
+  const auto scan =
+      read("a.csv", "\xEF\xBB\xBF\"time\",\"Z\",\"Intensity\",\"X\",\"Y\",R,G,B\r\n0.1,3,7,1,2,1.0,0,0.5\r\n");
   ASSERT_TRUE(scan) << error_of(scan);
   ASSERT_EQ(scan->p_in_scan.size(), 1U);
   expect_near(scan->p_in_scan[0], {1, 2, 3}, 0);
@@ -50,7 +54,8 @@ TEST_F(Text, NamedColumnsMayStandAnywhere) {
 }
 
 TEST_F(Text, CommentsBlankLinesCrLfTitlesAndNan) {
-  const auto scan = read("a.xyz", "# made by hand\r\nMy survey of the barn\r\n\r\n1 2 3\r\n# between\r\n\r\nnan nan nan\r\n  +4 5e0 .6e1");
+  const auto scan = read(
+      "a.xyz", "# made by hand\r\nMy survey of the barn\r\n\r\n1 2 3\r\n# between\r\n\r\nnan nan nan\r\n  +4 5e0 .6e1");
   ASSERT_TRUE(scan) << error_of(scan);
   ASSERT_EQ(scan->p_in_scan.size(), 3U);
   EXPECT_TRUE(std::isnan(scan->p_in_scan[1].y()));
@@ -68,15 +73,18 @@ TEST_F(Text, PtsCountsItsPoints) {
   EXPECT_NE(scan->header.notes.back().find("goes on behind the 2 points"), std::string::npos);
   EXPECT_FALSE(scan->header.station_in_scan.has_value());
   EXPECT_NE(error("b.pts", "3\n1 2 3\n4 5 6\n").find("the header says 3 points, the file holds 2"), std::string::npos);
-  EXPECT_NE(error("c.pts", "18446744073709551615\n1 2 3\n").find("the header says 18446744073709551615"), std::string::npos);
+  EXPECT_NE(error("c.pts", "18446744073709551615\n1 2 3\n").find("the header says 18446744073709551615"),
+            std::string::npos);
 }
 
 TEST_F(Text, ErrorsNameTheLineAndShowIt) {
-  EXPECT_NE(error("a.xyz", "1 2 3\n4 five 6\n7 8 9\n").find("a.xyz, line 2: this line is no point: '4 five 6'"), std::string::npos);
+  EXPECT_NE(error("a.xyz", "1 2 3\n4 five 6\n7 8 9\n").find("a.xyz, line 2: this line is no point: '4 five 6'"),
+            std::string::npos);
   EXPECT_NE(error("a.xyz", "1 2 3\n4 5").find("line 2: the last line is no whole point: '4 5'"), std::string::npos);
   EXPECT_NE(error("a.xyz", "1,5;2,5;3,5\n").find("decimal commas"), std::string::npos);
   EXPECT_NE(error("a.txt", "Only prose here.\nNothing else.\n").find("no line with a point found"), std::string::npos);
-  EXPECT_NE(error("a.csv", "id,name,points\n1,2,3\n").find("no columns x y z among 'id name points'"), std::string::npos);
+  EXPECT_NE(error("a.csv", "id,name,points\n1,2,3\n").find("no columns x y z among 'id name points'"),
+            std::string::npos);
   EXPECT_NE(error("a.csv", "x,y,z,qw,qx,qy,qz\n1,2,3,1,0,0,0\n").find("a table of poses"), std::string::npos);
   EXPECT_NE(error("a.csv", "x,y,height above\n1,2,3\n").find("columns x y z are not all there"), std::string::npos);
   EXPECT_NE(error("a.xyz", std::string("1 2 3\n4 5 6\0 7\n", 15)).find("zero byte"), std::string::npos);
@@ -85,7 +93,8 @@ TEST_F(Text, ErrorsNameTheLineAndShowIt) {
 }
 
 TEST_F(Text, MapCoordinatesLoseNothing) {
-  const auto scan = read("a.xyz", "0 0 0\n500123.4567 5240987.6543 431.1\n500123.4577 5240987.6553 431.1\n500125 5240980 430\n");
+  const auto scan =
+      read("a.xyz", "0 0 0\n500123.4567 5240987.6543 431.1\n500123.4577 5240987.6553 431.1\n500125 5240980 430\n");
   ASSERT_TRUE(scan) << error_of(scan);
   expect_near(scan->header.local_origin_in_scan, {500100, 5241000, 0}, 0);
   expect_near(scan->p_in_scan[1], {500123.4567, 5240987.6543, 431.1}, 1e-4);
@@ -121,7 +130,8 @@ TEST_F(Kitti, ReadsFourFloatsAPoint) {
   EXPECT_EQ(scan->header.num_points, 100U);
   expect_near(scan->p_in_scan[99], {99, 2, -1.5}, 0);
   EXPECT_EQ(scan->chunk.intensity[5], 0.25F);
-  EXPECT_NE(error_of(read_whole(write("b.bin", bytes.substr(1)))).find("1599 bytes are no multiple of 16"), std::string::npos);
+  EXPECT_NE(error_of(read_whole(write("b.bin", bytes.substr(1)))).find("1599 bytes are no multiple of 16"),
+            std::string::npos);
   EXPECT_NE(error_of(read_whole(write("c.bin", std::string(1600, '\x7F')))).find("no coordinates"), std::string::npos);
 }
 

@@ -6,8 +6,8 @@
 
 namespace isthmus::io {
 
-/// A length that is no multiple of 16 is an error, and so is content that cannot be coordinates (many other kinds of files
-/// end in .bin).
+/// A length that is no multiple of 16 is an error, and so is content that cannot be coordinates (many other kinds of
+/// files end in .bin).
 OpenedScan open_kitti(const ScanRef& scan);
 
 }  // namespace isthmus::io

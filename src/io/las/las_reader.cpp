@@ -26,7 +26,17 @@ struct PointFormat {
   std::size_t colour;  // offset of red green blue (uint16); 0 = none
 };
 constexpr std::array<PointFormat, 11> kPointFormats = {{
-    {20, 0}, {28, 0}, {26, 20}, {34, 28}, {57, 0}, {63, 28}, {30, 0}, {36, 30}, {38, 30}, {59, 0}, {67, 30},
+    {20, 0},
+    {28, 0},
+    {26, 20},
+    {34, 28},
+    {57, 0},
+    {63, 28},
+    {30, 0},
+    {36, 30},
+    {38, 30},
+    {59, 0},
+    {67, 30},
 }};
 
 struct LasHeader {
@@ -82,14 +92,16 @@ Result<void> check(const LasHeader& las, const std::string& file) {
                 "versions 1.0 to 1.4 are read");
   }
   if ((las.format & kCompressedBits) != 0) {
-    return fail("unsupported format: compressed LAS (LAZ)", at_byte(file, 104), "decompress it: laszip, or pdal translate");
+    return fail("unsupported format: compressed LAS (LAZ)", at_byte(file, 104),
+                "decompress it: laszip, or pdal translate");
   }
   if (las.format >= kPointFormats.size()) {
-    return fail(fmt::format("unsupported format: LAS point format {}", las.format), at_byte(file, 104), "0 to 10 are read");
+    return fail(fmt::format("unsupported format: LAS point format {}", las.format), at_byte(file, 104),
+                "0 to 10 are read");
   }
   if (las.record_bytes < kPointFormats[las.format].bytes) {
-    return fail(fmt::format("{} bytes per point are too few for point format {}, which has {}", las.record_bytes, las.format,
-                            kPointFormats[las.format].bytes),
+    return fail(fmt::format("{} bytes per point are too few for point format {}, which has {}", las.record_bytes,
+                            las.format, kPointFormats[las.format].bytes),
                 at_byte(file, 105));
   }
   if (las.header_bytes < kSmallestHeader || las.points_begin < las.header_bytes) {

@@ -71,7 +71,8 @@ std::uint32_t little_endian_32(const char* bytes) {
 Result<std::vector<char>> decompress_pcd_block(InputFile& file, const PcdHeader& pcd) {
   std::array<char, 8> sizes = {};
   const std::uint64_t begin = pcd.data_begin;
-  if (auto read = file.read_at(begin, sizes.data(), sizes.size()); !read) return tl::unexpected(std::move(read.error()));
+  if (auto read = file.read_at(begin, sizes.data(), sizes.size()); !read)
+    return tl::unexpected(std::move(read.error()));
   const std::uint64_t packed = little_endian_32(sizes.data());
   const std::uint64_t unpacked = little_endian_32(sizes.data() + 4);
   const std::uint64_t left = file.size() - begin - sizes.size();
@@ -81,8 +82,8 @@ Result<std::vector<char>> decompress_pcd_block(InputFile& file, const PcdHeader&
   }
   const std::uint64_t size = pcd.bytes_per_point();
   if (unpacked / size != pcd.num_points || unpacked % size != 0) {
-    return fail(fmt::format("the header says {} points of {} bytes, the compressed block holds {} bytes", pcd.num_points,
-                            size, unpacked),
+    return fail(fmt::format("the header says {} points of {} bytes, the compressed block holds {} bytes",
+                            pcd.num_points, size, unpacked),
                 at_byte(file.name(), begin));
   }
   const std::string where = at_byte(file.name(), begin + sizes.size());
@@ -91,7 +92,8 @@ Result<std::vector<char>> decompress_pcd_block(InputFile& file, const PcdHeader&
   if (auto read = file.read_at(begin + sizes.size(), in.data(), in.size()); !read) {
     return tl::unexpected(std::move(read.error()));
   }
-  const unsigned done = pcl::lzfDecompress(in.data(), static_cast<unsigned>(packed), out.data(), static_cast<unsigned>(unpacked));
+  const unsigned done =
+      pcl::lzfDecompress(in.data(), static_cast<unsigned>(packed), out.data(), static_cast<unsigned>(unpacked));
   if (done != unpacked) return fail("the compressed block is damaged", where, "export the file again");
   return out;
 }

@@ -6,8 +6,8 @@
 
 namespace isthmus::io {
 
-/// The decompressed block. `file` stands at the data. Sizes are checked against the file and against what LZF can expand
-/// to at most before anything is allocated.
+/// The decompressed block. `file` stands at the data. Sizes are checked against the file and against what LZF can
+/// expand to at most before anything is allocated.
 Result<std::vector<char>> decompress_pcd_block(InputFile& file, const PcdHeader& pcd);
 
 /// Streams a decompressed block, whose size has been checked against header.num_points.

@@ -98,7 +98,9 @@ Result<void> put_fields(const RawHeader& raw, PcdHeader& header, const std::stri
     PcdField field;
     field.name = raw.names[i];
     const auto type = type_of(raw.types[i], raw.sizes[i]);
-    if (!type) return fail("unknown type " + in_quotes(raw.types[i] + raw.sizes[i]) + " of field " + in_quotes(field.name), file);
+    if (!type)
+      return fail("unknown type " + in_quotes(raw.types[i] + raw.sizes[i]) + " of field " + in_quotes(field.name),
+                  file);
     field.type = *type;
     const auto count = raw.counts.empty() ? std::optional(1U) : whole_number<std::uint32_t>(raw.counts[i]);
     if (!count || *count > kMostNumbersPerField) return fail("bad COUNT " + in_quotes(raw.counts[i]), file);

@@ -11,8 +11,8 @@
 //   POINTS n*m
 //   DATA ascii | binary | binary_compressed
 //
-// Source: pcl.readthedocs.io, "The PCD file format". binary_compressed: uint32 compressed size, uint32 size, then one LZF
-// block of the fields one after the other (all x, all y, ...).
+// Source: pcl.readthedocs.io, "The PCD file format". binary_compressed: uint32 compressed size, uint32 size, then one
+// LZF block of the fields one after the other (all x, all y, ...).
 #pragma once
 
 #include <Eigen/Core>

@@ -15,8 +15,8 @@
 namespace isthmus::io {
 namespace {
 
-// Records as they lie in a binary file (field after field in each point) or, for compressed data, all points of one field
-// after the other.
+// Records as they lie in a binary file (field after field in each point) or, for compressed data, all points of one
+// field after the other.
 RecordLayout layout_of(const PcdHeader& pcd, bool field_by_field) {
   RecordLayout layout;
   layout.bytes_per_record = pcd.bytes_per_point();

@@ -4,9 +4,8 @@
 //   format ascii|binary_little_endian|binary_big_endian 1.0
 //   comment ... | obj_info ...
 //   element NAME COUNT
-//   property TYPE NAME                          TYPE: char uchar short ushort int uint float double, or int8 ... float64
-//   property list COUNT_TYPE TYPE NAME
-//   end_header
+//   property TYPE NAME                          TYPE: char uchar short ushort int uint float double, or int8 ...
+//   float64 property list COUNT_TYPE TYPE NAME end_header
 //
 // Elements follow in the order of the header; in ascii files one per line. Source: G. Turk, "The PLY polygon file
 // format" (1994). Differences: names of types as CloudCompare, PDAL and libply write them; unknown header lines are

@@ -33,8 +33,8 @@ Result<bool> skip_bytes(InputFile& file, std::uint64_t bytes) {
   return true;
 }
 
-// Moves over one element. The values of its scalar properties go to `scalars`, one after the other, if given. False when
-// the file ends inside the element.
+// Moves over one element. The values of its scalar properties go to `scalars`, one after the other, if given. False
+// when the file ends inside the element.
 Result<bool> walk_element(InputFile& file, const PlyElement& element, bool swap_bytes, std::vector<char>* scalars) {
   for (const PlyProperty& property : element.properties) {
     const std::size_t head = bytes_of(property.list_count_type.value_or(property.type));
@@ -84,7 +84,8 @@ class PlyListReader final : public ProbingReader {
     const std::uint64_t place = file_.offset();
     const std::uint64_t num_read = std::exchange(num_read_, 0);
     file_.seek(begin_byte_);
-    auto records = gather(vertex_.count, std::max<std::uint64_t>(1, vertex_.count / std::max<std::size_t>(1, max_points)));
+    auto records =
+        gather(vertex_.count, std::max<std::uint64_t>(1, vertex_.count / std::max<std::size_t>(1, max_points)));
     file_.seek(place);
     num_read_ = num_read;
     if (!records) return tl::unexpected(std::move(records.error()));
@@ -149,7 +150,8 @@ Result<void> skip_ply_elements(InputFile& file, const PlyElement& element, bool 
 OpenedScan open_ply_list_vertices(InputFile file, ScanHeader header, const PlyElement& vertex, bool swap_bytes) {
   const RecordBlock at_least = {file.offset(), vertex.count};
   const auto least_bytes = static_cast<std::size_t>(without_lists(vertex).fixed_bytes());
-  if (auto fits = check_record_count(file, least_bytes, at_least); !fits) return tl::unexpected(std::move(fits.error()));
+  if (auto fits = check_record_count(file, least_bytes, at_least); !fits)
+    return tl::unexpected(std::move(fits.error()));
   auto reader = std::make_unique<PlyListReader>(std::move(file), std::move(header), vertex, swap_bytes);
   if (auto chosen = reader->choose_from_sample(); !chosen) return tl::unexpected(std::move(chosen.error()));
   return reader;

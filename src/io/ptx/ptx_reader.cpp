@@ -26,7 +26,8 @@ Result<std::vector<double>> numbers_of_next_line(LineReader& lines, const std::s
   auto got = lines.next(line);
   if (!got) return tl::unexpected(std::move(got.error()));
   const std::string where = at_line(file, lines.number() + (*got ? 0 : 1));
-  if (!*got) return fail(fmt::format("the file ends inside a PTX header, before {}", what), where, "the file is cut short");
+  if (!*got)
+    return fail(fmt::format("the file ends inside a PTX header, before {}", what), where, "the file is cut short");
   std::vector<double> numbers;
   for (const auto word : words_of(line)) {
     const auto number = whole_number<double>(word);
@@ -52,7 +53,8 @@ Result<std::uint64_t> count_of_next_line(LineReader& lines, const std::string& f
 
 Result<PtxHeader> read_header(LineReader& lines, const std::string& file) {
   PtxHeader ptx;
-  for (auto [count, what] : {std::pair{&ptx.columns, "the number of columns"}, std::pair{&ptx.rows, "the number of rows"}}) {
+  for (auto [count, what] :
+       {std::pair{&ptx.columns, "the number of columns"}, std::pair{&ptx.rows, "the number of rows"}}) {
     auto read = count_of_next_line(lines, file, what);
     if (!read) return tl::unexpected(std::move(read.error()));
     *count = *read;
@@ -68,7 +70,8 @@ Result<PtxHeader> read_header(LineReader& lines, const std::string& file) {
   for (int row = 0; row < 4; ++row) {
     auto read = numbers_of_next_line(lines, file, 4, "a row of the 4x4 matrix");
     if (!read) return tl::unexpected(std::move(read.error()));
-    for (int column = 0; column < 4; ++column) ptx.row_vector_pose(row, column) = (*read)[static_cast<std::size_t>(column)];
+    for (int column = 0; column < 4; ++column)
+      ptx.row_vector_pose(row, column) = (*read)[static_cast<std::size_t>(column)];
   }
   return ptx;
 }
@@ -130,8 +133,8 @@ OpenedScan open_ptx(const ScanRef& scan) {
     auto scans = scans_of_ptx(scan.path);
     if (!scans) return tl::unexpected(std::move(scans.error()));
     if (scan.index < 0 || static_cast<std::size_t>(scan.index) >= scans->size()) {
-      return fail(fmt::format("the file holds {} scans, there is no #{}", scans->size(), scan.index), scan.path.string(),
-                  "scans are counted from 0");
+      return fail(fmt::format("the file holds {} scans, there is no #{}", scans->size(), scan.index),
+                  scan.path.string(), "scans are counted from 0");
     }
     place = (*scans)[static_cast<std::size_t>(scan.index)].place;
   }

@@ -14,8 +14,8 @@
 
 namespace isthmus::io {
 
-/// Counts lines over the whole file (the format has no index). A damaged part ends the list with an entry that cannot be
-/// opened, so that the scans before it are not lost.
+/// Counts lines over the whole file (the format has no index). A damaged part ends the list with an entry that cannot
+/// be opened, so that the scans before it are not lost.
 Result<std::vector<ScanRef>> scans_of_ptx(const std::filesystem::path& path);
 
 /// No-return lines are left out and counted in a note. Station: the origin. file_from_scan: the stored matrix if rigid.

@@ -52,9 +52,7 @@ bool is_constant(const Table& table, std::size_t column) {
   return all_in(table, column, 1, [&](double v) { return v == table.front()[column]; });
 }
 
-bool is_colour(FieldRole role) {
-  return role == FieldRole::red || role == FieldRole::green || role == FieldRole::blue;
-}
+bool is_colour(FieldRole role) { return role == FieldRole::red || role == FieldRole::green || role == FieldRole::blue; }
 
 }  // namespace
 
@@ -114,7 +112,8 @@ std::string describe(const TextColumns& columns) {
   constexpr std::array kNames = {"-", "x", "y", "z", "intensity", "red", "green", "blue", "rgb"};
   std::string text = "columns";
   for (const FieldRole role : columns.roles) text.append(" ").append(kNames[static_cast<std::size_t>(role)]);
-  return text + (columns.delimiter == ' ' ? std::string(", delimiter blank") : fmt::format(", delimiter '{}'", columns.delimiter));
+  return text + (columns.delimiter == ' ' ? std::string(", delimiter blank")
+                                          : fmt::format(", delimiter '{}'", columns.delimiter));
 }
 
 }  // namespace isthmus::io

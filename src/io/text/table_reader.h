@@ -8,8 +8,8 @@ namespace isthmus::io {
 /// .xyz .txt .csv .asc: any table with coordinates.
 OpenedScan open_xyz(const ScanRef& scan);
 
-/// Leica PTS: a line with the number of points, then x y z [intensity] [r g b], in a frame shared by all stations: where the
-/// scanner stood is not known.
+/// Leica PTS: a line with the number of points, then x y z [intensity] [r g b], in a frame shared by all stations:
+/// where the scanner stood is not known.
 OpenedScan open_pts(const ScanRef& scan);
 
 /// 3DTK .3d: x right, y up, z forward in centimetres (left-handed), read as metres with x forward, y left, z up:

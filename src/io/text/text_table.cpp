@@ -37,9 +37,9 @@ bool is_point_line(std::string_view line) {
 bool has_decimal_commas(std::string_view line) {
   const Fields fields = fields_of(line, ';');
   return fields.size() >= 3 && std::all_of(fields.begin(), fields.end(), [](std::string_view field) {
-    const Fields parts = fields_of(field, ',');
-    return !parts.empty() && parts.size() <= 2 && count_numbers(parts) == parts.size();
-  });
+           const Fields parts = fields_of(field, ',');
+           return !parts.empty() && parts.size() <= 2 && count_numbers(parts) == parts.size();
+         });
 }
 
 struct Names {
@@ -54,7 +54,8 @@ Names names_of(std::string_view line) {
   Names names;
   for (const auto field : fields_of(line, delimiter_of(line))) {
     FieldRole role = role_of_field(field);
-    const bool taken = role != FieldRole::other && std::find(names.roles.begin(), names.roles.end(), role) != names.roles.end();
+    const bool taken =
+        role != FieldRole::other && std::find(names.roles.begin(), names.roles.end(), role) != names.roles.end();
     const bool coordinate = role == FieldRole::x || role == FieldRole::y || role == FieldRole::z;
     names.repeated |= taken && coordinate;
     names.num_known += coordinate && !taken ? 1 : 0;
@@ -69,10 +70,10 @@ Names names_of(std::string_view line) {
 
 // The lines before the first point.
 struct Intro {
-  std::string names_line;         // the last line of words
-  std::string comment;            // the last comment, without its mark
+  std::string names_line;  // the last line of words
+  std::string comment;     // the last comment, without its mark
   std::uint64_t names_number = 0;
-  bool has_prose = false;         // more than one line of words
+  bool has_prose = false;  // more than one line of words
   std::optional<std::uint64_t> count;
 };
 

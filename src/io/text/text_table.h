@@ -1,6 +1,7 @@
 // What a text file with a point per line looks like: delimiter, columns, lines before the first point.
 //
-//   [comments: # // % !]  [count]  [header line with names, or a title]  then lines x y z ... separated by blanks , ; or |
+//   [comments: # // % !]  [count]  [header line with names, or a title]  then lines x y z ... separated by blanks , ;
+//   or |
 #pragma once
 
 #include <optional>

@@ -1,0 +1,115 @@
+// Damaged files: any bytes give points or an error, soon, without a crash (run under the sanitizers too).
+#include <fstream>
+
+#include "base/rng.h"
+#include "io/inspect.h"
+#include "io/scan_directory.h"
+#include "io/scan_writer.h"
+#include "io_testing.h"
+#include "shared_data.h"
+
+namespace isthmus::io::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string slurp(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// A few bytes changed, a piece cut out, doubled, or the end cut off.
+std::string damaged(std::string bytes, Rng& rng) {
+  const std::string digits = "0123456789-+.eE \n\xFF";
+  const std::size_t changes = 1 + rng.below(6);
+  for (std::size_t c = 0; c < changes && !bytes.empty(); ++c) {
+    const bool in_header = rng.below(2) == 0;
+    const std::size_t at = rng.below(in_header ? std::min<std::size_t>(bytes.size(), 400) : bytes.size());
+    const std::size_t length = std::min<std::size_t>(bytes.size() - at, 1 + rng.below(20));
+    switch (rng.below(6)) {
+      case 0:
+        bytes[at] = static_cast<char>(rng.below(256));
+        break;
+      case 1:
+        bytes[at] = digits[rng.below(digits.size())];
+        break;
+      case 2:
+        bytes.erase(at, length);
+        break;
+      case 3:
+        bytes.insert(at, bytes.substr(at, length));
+        break;
+      case 4:
+        bytes.insert(at, "99999999999");
+        break;
+      default:
+        bytes.resize(at);
+    }
+  }
+  return bytes;
+}
+
+void read_in_every_way(const fs::path& path) {
+  const auto scans = scans_of_file(path);
+  if (!scans) return;
+  for (const ScanRef& scan : *scans) {
+    const auto whole = read_whole(scan, 1000);
+    EXPECT_TRUE(whole || !whole.error().what.empty());
+    EXPECT_TRUE(!whole || whole->p_in_scan.size() <= fs::file_size(path) * 88);
+    const auto probe = probe_scan(scan, 100);
+    EXPECT_TRUE(!probe || probe->points.size() <= 100U);
+    const auto summary = inspect_scan(scan);
+    EXPECT_EQ(summary.has_value(), whole.has_value());
+  }
+}
+
+class Damage : public IoTest {
+ protected:
+  void damage_often(const fs::path& good, int times) {
+    const std::string bytes = slurp(good);
+    ASSERT_FALSE(bytes.empty());
+    Rng rng(seed_of(1, good.filename().string()));
+    const fs::path path = folder / ("damaged" + good.extension().string());
+    for (int i = 0; i < times; ++i) {
+      fs::remove(path);  // writing over it would wait for the disk each time
+      std::ofstream(path, std::ios::binary) << damaged(bytes, rng);
+      read_in_every_way(path);
+      if (HasFailure()) {
+        fs::copy_file(path, fs::temp_directory_path() / ("isthmus_damaged" + good.extension().string()),
+                      fs::copy_options::overwrite_existing);
+        FAIL() << good << " damaged for the " << i << "th time; the file is kept in the temporary folder";
+      }
+    }
+  }
+};
+
+TEST_F(Damage, FilesOfOurOwnNeverCrash) {
+  PointChunk points;
+  Rng rng(5);
+  for (int i = 0; i < 40; ++i) {
+    points.points.emplace_back(static_cast<float>(rng.uniform()), 2.0F, static_cast<float>(i));
+    points.intensity.push_back(static_cast<float>(i));
+    points.colour.push_back({1, 2, 3});
+  }
+  for (const char* name : {"a.ply", "a.pcd", "a.xyz"}) {
+    ASSERT_TRUE(write_scan(folder / name, points));
+    damage_often(folder / name, 400);
+  }
+  damage_often(write("a.bin", std::string(160, '\x3F')), 50);
+  damage_often(write("a.3d", "1 2 3\n4 5 6\n7 8 9\n"), 100);
+}
+
+TEST_F(Damage, FilesOfOtherProgramsNeverCrash) {
+  ISTHMUS_SHARED_DATA_OR_SKIP(data);
+  for (const char* name :
+       {"las_pdal/hextest.las", "las_pdal/spec_3.las", "las_pdal/extrabytes.las", "pcd_pcl/octants.pcd",
+        "pcd_pcl/car6.pcd", "pcd_pdal/autzen-utm.pcd", "ptx_pdal/multiple-and-transform.ptx", "pts_pdal/test.pts",
+        "ply_pdal/mesh.ply", "ply_pdal/simple_binary.ply", "ply_trimesh/points_ascii_with_lists.ply",
+        "ply_trimesh/tet.ply", "ply_tinyply/icosahedron.ply", "obj_pdal/box.obj", "text_pdal/quoted.txt",
+        "text_pdal/utm17_3.txt"}) {
+    damage_often(data / "formats" / name, 100);
+  }
+}
+
+}  // namespace
+}  // namespace isthmus::io::testing

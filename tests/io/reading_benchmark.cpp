@@ -1,0 +1,106 @@
+// How fast files are read, one core, from the page cache. Files are written to a temporary folder first.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "io/scan_reader.h"
+#include "io/scan_writer.h"
+
+namespace isthmus::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kPoints = 2000000;
+
+PointChunk some_points() {
+  PointChunk points;
+  std::uint32_t state = 7;
+  const auto next = [&] { return static_cast<float>((state = state * 1664525U + 1013904223U) >> 8) * 5e-6F - 40.0F; };
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    points.points.emplace_back(next(), next(), next());
+    points.intensity.push_back(next());
+  }
+  return points;
+}
+
+template <class T>
+void put(std::string& bytes, std::size_t at, T value) {
+  std::memcpy(bytes.data() + at, &value, sizeof value);
+}
+
+// LAS 1.2, point format 0.
+void write_las(const fs::path& path, const PointChunk& points) {
+  constexpr double kScale = 0.001;
+  std::string bytes(227, '\0');
+  bytes.replace(0, 4, "LASF");
+  put<std::uint8_t>(bytes, 24, 1);
+  put<std::uint8_t>(bytes, 25, 2);
+  put<std::uint16_t>(bytes, 94, 227);
+  put<std::uint32_t>(bytes, 96, 227);
+  put<std::uint16_t>(bytes, 105, 20);
+  put(bytes, 107, static_cast<std::uint32_t>(points.points.size()));
+  for (std::size_t axis = 0; axis < 3; ++axis) put(bytes, 131 + 8 * axis, kScale);
+  for (const auto& p : points.points) {
+    std::string record(20, '\0');
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      put(record, 4 * axis, static_cast<std::int32_t>(std::lround(p[static_cast<Eigen::Index>(axis)] / kScale)));
+    }
+    bytes += record;
+  }
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+/// The files, in a folder that goes away with the program.
+struct Files {
+  fs::path folder;
+  Files() {
+    std::string pattern = (fs::temp_directory_path() / "isthmus_bench_XXXXXX").string();
+    folder = ::mkdtemp(pattern.data());
+    const PointChunk points = some_points();
+    for (const char* name : {"a.ply", "a.pcd", "a.xyz"}) {
+      if (!write_scan(folder / name, points)) std::abort();
+    }
+    write_las(folder / "a.las", points);
+    std::ofstream(folder / "a.pts") << kPoints << "\n" << std::ifstream(folder / "a.xyz").rdbuf();
+  }
+  ~Files() { fs::remove_all(folder); }
+};
+
+void read_all(benchmark::State& state, const char* name) {
+  static const Files files;
+  const fs::path path = files.folder / name;
+  for (auto _ : state) {
+    auto reader = open_scan({path, 0, {}});
+    std::size_t points = 0;
+    for (PointChunk chunk; reader;) {
+      if (!(*reader)->read(chunk, 65536) || chunk.points.empty()) break;
+      points += chunk.points.size();
+    }
+    if (points != kPoints) state.SkipWithError("not all points were read");
+  }
+  state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * fs::file_size(path)));
+}
+
+void probe(benchmark::State& state, const char* name) {
+  static const Files files;
+  for (auto _ : state) {
+    auto points = probe_scan({files.folder / name, 0, {}}, 20000);
+    if (!points || points->points.size() < 19000) state.SkipWithError("too few points probed");
+  }
+}
+
+BENCHMARK_CAPTURE(read_all, ply, "a.ply")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read_all, pcd, "a.pcd")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read_all, las, "a.las")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read_all, xyz, "a.xyz")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read_all, pts, "a.pts")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(probe, ply, "a.ply")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(probe, xyz, "a.xyz")->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace isthmus::io

@@ -76,8 +76,8 @@ sim::Station set_up(const Vector3d& centre, const SimulateOptions& o, std::uint6
   return station;
 }
 
-io::PointChunk scan_place(const Place& place, const sim::Station& station, const SimulateOptions& o, std::uint64_t seed,
-                          Result<void>& status) {
+Result<io::PointChunk> scan_place(const Place& place, const sim::Station& station, const SimulateOptions& o,
+                                  std::uint64_t seed) {
   sim::Mesh moving;
   if (o.movers) {
     Rng rng(seed_of(seed, "movers"));
@@ -85,10 +85,7 @@ io::PointChunk scan_place(const Place& place, const sim::Station& station, const
   }
   const bool something_moves = !moving.triangles.empty();
   const Result<RayScene> moved = RayScene::build(std::move(moving));
-  if (!moved) {
-    status = tl::unexpected(moved.error());
-    return {};
-  }
+  if (!moved) return tl::unexpected(moved.error());
   return sim::scan_from(station, {&place.solids, something_moves ? &*moved : nullptr}, model_of(o));
 }
 
@@ -147,14 +144,42 @@ Result<Place> make_foreign_place(int k, const SimulateOptions& o) {
   return make_place(kind, {1, sim::default_spacing_m(kind), seed});
 }
 
+/// One scan on disk and the truth about it.
+struct WrittenScan {
+  SimulatedScan scan;
+  std::string pose;  ///< its line of poses.gt.txt
+};
+
+Result<WrittenScan> write_scan_of(const Place& place, const Vector3d& centre, std::size_t number,
+                                  const SimulateOptions& o) {
+  const std::uint64_t seed = seed_of(static_cast<std::uint64_t>(o.seed), fmt::format("scan {}", number));
+  const sim::Station station = set_up(centre, o, seed);
+  const Result<io::PointChunk> points = scan_place(place, station, o, seed);
+  if (!points) return tl::unexpected(points.error());
+  const sim::Grid grid = sim::grid_of(o.resolution_deg * kRadPerDeg);
+  WrittenScan written;
+  written.scan.name = fmt::format("scan_{:03}.{}", number, o.format);
+  written.scan.num_rays = static_cast<std::uint64_t>(grid.rows) * static_cast<std::uint64_t>(grid.columns);
+  written.scan.num_points = points->points.size();
+  written.pose = pose_line(written.scan.name, station);
+  const Result<void> done = io::write_scan(std::filesystem::path(o.output) / written.scan.name, *points);
+  if (!done) return tl::unexpected(done.error());
+  return written;
+}
+
+Result<void> write_truth(const SimulateOptions& o, const std::string& poses, const std::string& foreign_names) {
+  const std::filesystem::path folder = o.output;
+  if (const Result<void> done = write_file_atomically(folder / "poses.gt.txt", poses); !done) return done;
+  return o.foreign > 0 ? write_file_atomically(folder / "foreign.txt", foreign_names) : Result<void>{};
+}
+
 }  // namespace
 
 Result<SimulationSummary> simulate(const SimulateOptions& o, const SimulationProgress& progress) {
-  if (const Result<void> ok = check(o); !ok) return tl::unexpected(ok.error());
-  const std::filesystem::path folder = o.output;
+  if (const Result<void> good = check(o); !good) return tl::unexpected(good.error());
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) return fail("cannot create the folder: " + error.message(), folder.string());
+  std::filesystem::create_directories(o.output, error);
+  if (error) return fail("cannot create the folder: " + error.message(), o.output);
 
   SimulationSummary summary;
   summary.spacing_m = o.spacing_m.value_or(sim::default_spacing_m(o.scene));
@@ -164,39 +189,24 @@ Result<SimulationSummary> simulate(const SimulateOptions& o, const SimulationPro
   summary.num_triangles = home->solids.mesh().triangles.size();
 
   std::string poses, foreign_names;
+  int num_foreign = 0;
   const std::vector<bool> is_foreign = scatter_foreign(o.stations, o.foreign, seed);
-  const sim::Grid grid = sim::grid_of(o.resolution_deg * kRadPerDeg);
-  int num_home = 0, num_foreign = 0;
   for (std::size_t k = 0; k < is_foreign.size(); ++k) {
-    std::optional<Place> elsewhere;
+    Result<WrittenScan> written;
     if (is_foreign[k]) {
-      Result<Place> other = make_foreign_place(num_foreign++, o);
-      if (!other) return tl::unexpected(other.error());
-      elsewhere = std::move(*other);
-    }
-    const Place& place = elsewhere ? *elsewhere : *home;
-    const Vector3d& centre = elsewhere ? place.stations.front() : place.stations[static_cast<std::size_t>(num_home++)];
-    const std::uint64_t scan_seed = seed_of(seed, fmt::format("scan {}", k));
-    const sim::Station station = set_up(centre, o, scan_seed);
-    Result<void> status;
-    const io::PointChunk points = scan_place(place, station, o, scan_seed, status);
-    if (!status) return tl::unexpected(status.error());
-    SimulatedScan scan{fmt::format("scan_{:03}.{}", k, o.format), static_cast<std::uint64_t>(grid.rows) * grid.columns,
-                       points.points.size(), is_foreign[k]};
-    if (const auto ok = io::write_scan(folder / scan.name, points); !ok) return tl::unexpected(ok.error());
-    if (is_foreign[k]) {
-      foreign_names += scan.name + "\n";
+      const Result<Place> elsewhere = make_foreign_place(num_foreign++, o);
+      if (!elsewhere) return tl::unexpected(elsewhere.error());
+      written = write_scan_of(*elsewhere, elsewhere->stations.front(), k, o);
     } else {
-      poses += pose_line(scan.name, station);
+      written = write_scan_of(*home, home->stations[k - static_cast<std::size_t>(num_foreign)], k, o);
     }
-    summary.scans.push_back(scan);
-    if (progress) progress(scan, k + 1, is_foreign.size());
+    if (!written) return tl::unexpected(written.error());
+    written->scan.foreign = is_foreign[k];
+    (is_foreign[k] ? foreign_names : poses) += is_foreign[k] ? written->scan.name + "\n" : written->pose;
+    summary.scans.push_back(written->scan);
+    if (progress) progress(written->scan, k + 1, is_foreign.size());
   }
-  if (const auto ok = write_file_atomically(folder / "poses.gt.txt", poses); !ok) return tl::unexpected(ok.error());
-  if (o.foreign > 0) {
-    if (const auto ok = write_file_atomically(folder / "foreign.txt", foreign_names); !ok)
-      return tl::unexpected(ok.error());
-  }
+  if (const Result<void> done = write_truth(o, poses, foreign_names); !done) return tl::unexpected(done.error());
   return summary;
 }
 

@@ -1,12 +1,10 @@
 #include "io/output_file.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <utility>
 
@@ -31,14 +29,15 @@ tl::unexpected<Error> OutputFile::system_failure(std::string_view verb) const {
 }
 
 Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {
-  std::string temporary = path.string() + ".XXXXXX";
-  const int descriptor = ::mkstemp(temporary.data());
-  OutputFile file(descriptor, path, temporary);
-  if (descriptor < 0) return file.system_failure("created");
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
-  if (::fchmod(descriptor, 0666 & ~mask) != 0) return file.system_failure("created");
-  return file;
+  constexpr int kTries = 1000;  // names left behind by killed runs
+  for (int k = 0;; ++k) {
+    const std::string temporary = path.string() + ".tmp" + std::to_string(::getpid()) + "-" + std::to_string(k);
+    const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor < 0 && errno == EEXIST && k < kTries) continue;
+    OutputFile file(descriptor, path, temporary);
+    if (descriptor < 0) return file.system_failure("created");
+    return file;
+  }
 }
 
 Result<void> OutputFile::write(std::string_view bytes) {

@@ -29,7 +29,7 @@ struct FilePlace {
 /// One scan of one file.
 struct ScanRef {
   std::filesystem::path path;
-  int index = 0;  ///< which scan of the file, from 0
+  int index = 0;     ///< which scan of the file, from 0
   std::string name;  ///< path relative to the input folder, "#k" (= index) if the file holds several, percent-encoded
   FilePlace place = {};  ///< filled in by scans_of_file for formats that need it; never needed from a caller
 };

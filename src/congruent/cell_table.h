@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -17,9 +16,13 @@ inline CellKey cell_key(const Eigen::Vector3i& cell) {
   const auto axis = [](int i) { return static_cast<CellKey>(i + (1 << 20)) & 0x1FFFFFU; };
   return (axis(cell.x()) << 42) | (axis(cell.y()) << 21) | axis(cell.z());
 }
+/// Floor by truncation: without SSE 4.1 std::floor is a call.
+inline int floor_to_int(float x) {
+  const int truncated = static_cast<int>(x);
+  return truncated - (static_cast<float>(truncated) > x ? 1 : 0);
+}
 inline Eigen::Vector3i cell_of(const Eigen::Vector3f& p, float inverse_edge) {
-  return {static_cast<int>(std::floor(p.x() * inverse_edge)), static_cast<int>(std::floor(p.y() * inverse_edge)),
-          static_cast<int>(std::floor(p.z() * inverse_edge))};
+  return {floor_to_int(p.x() * inverse_edge), floor_to_int(p.y() * inverse_edge), floor_to_int(p.z() * inverse_edge)};
 }
 
 /// Entries [begin, end) of one cell.

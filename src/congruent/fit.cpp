@@ -14,6 +14,18 @@ Eigen::Vector3d mean(std::span<const Eigen::Vector3d> points) {
   return sum / static_cast<double>(points.size());
 }
 
+using Corners = std::array<Eigen::Vector3d, 4>;
+
+// Orthonormal axes from the diagonals: x bisects them, z is normal to both.
+Eigen::Matrix3d diagonal_frame(const Corners& abcd) {
+  const Eigen::Vector3d u = (abcd[1] - abcd[0]).normalized(), v = (abcd[3] - abcd[2]).normalized();
+  Eigen::Matrix3d frame;
+  frame.col(0) = (u + v).normalized();
+  frame.col(2) = u.cross(v).normalized();
+  frame.col(1) = frame.col(2).cross(frame.col(0));
+  return frame;
+}
+
 }  // namespace
 
 std::optional<RigidFit> fit_rigid(std::span<const Eigen::Vector3d> source, std::span<const Eigen::Vector3d> target) {
@@ -37,6 +49,16 @@ std::optional<RigidFit> fit_rigid(std::span<const Eigen::Vector3d> source, std::
     sq_sum += (fit.target_from_source * source[i] - target[i]).squaredNorm();
   fit.rms_m = std::sqrt(sq_sum / static_cast<double>(source.size()));
   return fit;
+}
+
+DiagonalFit::DiagonalFit(const Corners& source_abcd)
+    : source_from_frame_(diagonal_frame(source_abcd)), source_middle_(mean(source_abcd)) {}
+
+Transform DiagonalFit::operator()(const Corners& target_abcd) const {
+  Transform pose = Transform::Identity();
+  pose.linear() = diagonal_frame(target_abcd) * source_from_frame_.transpose();
+  pose.translation() = mean(target_abcd) - pose.linear() * source_middle_;
+  return pose;
 }
 
 }  // namespace isthmus::congruent

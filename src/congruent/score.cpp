@@ -80,39 +80,27 @@ ScoreSample draw_sample(const LocalCloud& source, std::size_t size, Rng& rng) {
   return sample;
 }
 
-namespace {
-
-// Counts the leading `size` points; stops early, with less than the count, once `to_beat` is out of reach.
-std::int64_t count(const FacingGrid& target, const ScoreSample& sample, std::int64_t size,
-                   const Transform& target_from_source, std::int64_t to_beat, ScoreCounts& counts) {
+std::optional<std::int64_t> count_leading(const FacingGrid& target, const ScoreSample& sample, std::size_t size,
+                                          const Transform& target_from_source, std::int64_t to_beat,
+                                          ScoreCounts& counts) {
   const Eigen::Matrix3f rotation = target_from_source.linear().cast<float>();
   const Eigen::Vector3f translation = target_from_source.translation().cast<float>();
   const bool oriented = !sample.normals.empty();
+  auto left = static_cast<std::int64_t>(std::min(size, sample.points.size()));
   std::int64_t common = 0;
-  for (std::int64_t i = 0; i < size && common + (size - i) > to_beat; ++i) {
+  for (std::size_t i = 0; left > 0 && common + left > to_beat; ++i, --left) {
     ++counts.points_looked_up;
-    const auto k = static_cast<std::size_t>(i);
-    const Eigen::Vector3f normal = oriented ? (rotation * sample.normals[k]).eval() : Eigen::Vector3f::Zero().eval();
-    if (target.has_facing(rotation * sample.points[k] + translation, normal)) ++common;
+    const Eigen::Vector3f normal = oriented ? (rotation * sample.normals[i]).eval() : Eigen::Vector3f::Zero().eval();
+    if (target.has_facing(rotation * sample.points[i] + translation, normal)) ++common;
   }
-  return common;
-}
-
-}  // namespace
-
-std::optional<std::int64_t> count_common(const FacingGrid& target, const ScoreSample& sample,
-                                         const Transform& target_from_source, std::int64_t to_beat,
-                                         ScoreCounts& counts) {
-  const auto size = static_cast<std::int64_t>(sample.points.size());
-  const std::int64_t common = count(target, sample, size, target_from_source, to_beat, counts);
   if (common <= to_beat) return std::nullopt;
   return common;
 }
 
-std::int64_t count_leading(const FacingGrid& target, const ScoreSample& sample, std::size_t size,
-                           const Transform& target_from_source, ScoreCounts& counts) {
-  return count(target, sample, static_cast<std::int64_t>(std::min(size, sample.points.size())), target_from_source, -1,
-               counts);
+std::optional<std::int64_t> count_common(const FacingGrid& target, const ScoreSample& sample,
+                                         const Transform& target_from_source, std::int64_t to_beat,
+                                         ScoreCounts& counts) {
+  return count_leading(target, sample, sample.points.size(), target_from_source, to_beat, counts);
 }
 
 }  // namespace isthmus::congruent

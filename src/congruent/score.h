@@ -52,15 +52,16 @@ struct ScoreCounts {
   std::uint64_t points_looked_up = 0;
 };
 
-/// Number of sample points that land within the tolerance of a facing target point. Gives up, with nothing, as soon as
-/// the points left can no longer bring the number above `to_beat`: so a result is exact and always above `to_beat`
-/// (-1 = count to the end).
+/// Number of sample points, of the leading `size`, that land within the tolerance of a facing target point. Gives up,
+/// with nothing, as soon as the points left can no longer bring the number above `to_beat`: so a result is exact and
+/// always above `to_beat` (-1 = count to the end).
+std::optional<std::int64_t> count_leading(const FacingGrid& target, const ScoreSample& sample, std::size_t size,
+                                          const Transform& target_from_source, std::int64_t to_beat,
+                                          ScoreCounts& counts);
+
+/// The same over the whole sample.
 std::optional<std::int64_t> count_common(const FacingGrid& target, const ScoreSample& sample,
                                          const Transform& target_from_source, std::int64_t to_beat,
                                          ScoreCounts& counts);
-
-/// The same over the leading `size` points only, to the end: a first look.
-std::int64_t count_leading(const FacingGrid& target, const ScoreSample& sample, std::size_t size,
-                           const Transform& target_from_source, ScoreCounts& counts);
 
 }  // namespace isthmus::congruent

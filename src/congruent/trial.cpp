@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <queue>
 #include <set>
 
 #include "congruent/congruent_sets.h"
@@ -162,28 +164,25 @@ std::vector<CongruentSet> sets_for(const TrialSetting& s, const Base& base, Cong
   return *sets;
 }
 
-// The pose that lays the base onto the set, if it fits, if the corners face the same way and the prior allows it.
-std::optional<Transform> pose_of(const TrialSetting& s, const Base& base, const CongruentSet& set) {
-  std::array<Eigen::Vector3d, 4> from, to;
-  for (std::size_t k = 0; k < 4; ++k) {
-    from[k] = s.source.points[base.points[k]].cast<double>();
-    to[k] = s.target.points[set[k]].cast<double>();
-  }
-  const auto fit = fit_rigid(from, to);
-  if (!fit || fit->rms_m > s.tolerance_m) return std::nullopt;
-  const Transform& pose = fit->target_from_source;
+std::array<Eigen::Vector3d, 4> corners(const LocalCloud& cloud, const std::array<std::uint32_t, 4>& points) {
+  std::array<Eigen::Vector3d, 4> out;
+  for (std::size_t k = 0; k < 4; ++k) out[k] = cloud.points[points[k]].cast<double>();
+  return out;
+}
+
+// True if the corners face the same way under the pose and the prior allows it.
+bool plausible(const TrialSetting& s, const Base& base, const CongruentSet& set, const Transform& pose) {
   const double min_cosine = std::cos(s.options.facing_tolerance_deg * kRadiansPerDegree);
   for (std::size_t k = 0; k < 4 && !s.source.normals.empty(); ++k) {
     const Eigen::Vector3d turned = pose.linear() * s.source.normals[base.points[k]].cast<double>();
-    if (turned.dot(s.target.normals[set[k]].cast<double>()) < min_cosine) return std::nullopt;
+    if (turned.dot(s.target.normals[set[k]].cast<double>()) < min_cosine) return false;
   }
   const double slack_rad = 2 * s.tolerance_m / std::min(base.length1_m, base.length2_m);
-  if (s.search.prior && !within(*s.search.prior, pose, slack_rad, s.tolerance_m)) return std::nullopt;
-  return pose;
+  return !s.search.prior || within(*s.search.prior, pose, slack_rad, s.tolerance_m);
 }
 
-// Poses that carry three far points of the source into the same cells are one: each corner of a right base has several
-// target points within the tolerance, so right poses come in crowds.
+// Poses that carry three far points of the source into the same cells count once: each corner of a right base has
+// several target points within the tolerance, so right poses come in crowds.
 class Crowds {
  public:
   explicit Crowds(const TrialSetting& s) : reach_m_(0.5 * s.source.diameter_m), inverse_edge_(1 / s.tolerance_m) {}
@@ -213,12 +212,23 @@ std::vector<FirstLook> most_promising(const TrialSetting& s, const Base& base, c
                                       CongruentCounts& counts, ScoreCounts& score_counts) {
   const auto capacity = static_cast<std::size_t>(s.options.max_scored);
   Crowds crowds(s);
+  const auto source_corners = corners(s.source, base.points);
+  const DiagonalFit quick_fit(source_corners);
+  std::priority_queue<std::int64_t, std::vector<std::int64_t>, std::greater<>> best_counts;
   std::vector<FirstLook> looks;
   for (const CongruentSet& set : sets) {
-    const auto pose = pose_of(s, base, set);
-    if (!pose || !crowds.is_new(*pose)) continue;
+    const auto target_corners = corners(s.target, set);
+    if (!crowds.is_new(quick_fit(target_corners))) continue;
+    const auto fit = fit_rigid(source_corners, target_corners);
+    if (!fit || fit->rms_m > s.tolerance_m || !plausible(s, base, set, fit->target_from_source)) continue;
     ++counts.transforms_looked_at;
-    looks.push_back({*pose, count_leading(s.grid, s.sample, kFirstLookPoints, *pose, score_counts)});
+    const std::int64_t to_beat = best_counts.size() < capacity ? -1 : best_counts.top();
+    const auto common =
+        count_leading(s.grid, s.sample, kFirstLookPoints, fit->target_from_source, to_beat, score_counts);
+    if (!common) continue;
+    looks.push_back({fit->target_from_source, *common});
+    best_counts.push(*common);
+    if (best_counts.size() > capacity) best_counts.pop();
   }
   std::stable_sort(looks.begin(), looks.end(), [](const auto& a, const auto& b) { return a.common > b.common; });
   if (looks.size() > capacity) looks.resize(capacity);

@@ -62,6 +62,22 @@ TEST(FitRigid, RefusesWhatFixesNoRotation) {
   EXPECT_FALSE(fit_rigid(broken, broken));
 }
 
+TEST(DiagonalFit, IsExactOnExactCornersAndCloseOnNoisyOnes) {
+  const std::array<Eigen::Vector3d, 4> corners{Eigen::Vector3d(-1, 0, 0), {2, 0.3, 0}, {0, -1, 0}, {0.4, 1.5, 0}};
+  Rng rng(1);
+  for (int i = 0; i < 50; ++i) {
+    const Transform truth = test::random_transform(rng, 10);
+    std::array<Eigen::Vector3d, 4> there = corners;
+    for (auto& p : there) p = truth * p;
+    EXPECT_TRUE(DiagonalFit(corners)(there).isApprox(truth, 1e-9));
+    for (auto& p : there) p += Eigen::Vector3d(rng.uniform(-0.05, 0.05), rng.uniform(-0.05, 0.05), 0);
+    const auto best = fit_rigid(corners, there);
+    ASSERT_TRUE(best);
+    for (const auto& p : corners)
+      EXPECT_LT(displacement_m(DiagonalFit(corners)(there), best->target_from_source, p), 0.1);
+  }
+}
+
 TEST(Refined, PullsANearPoseOntoTheSurface) {
   const auto target = recentred(test::sample_yard(0.15, 0.003, 0.05, 1).view(), true);
   const auto source = recentred(test::sample_yard(0.15, 0.003, 0.05, 2).view(), true);

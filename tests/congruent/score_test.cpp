@@ -82,6 +82,20 @@ TEST(Score, GivesUpExactlyWhenTheBoundCannotBeBeaten) {
   EXPECT_LT(hopeless.points_looked_up, all.points_looked_up / 2) << "no early exit";
 }
 
+TEST(Score, AFirstLookCountsTheLeadingPoints) {
+  Rng rng(1);
+  const auto target = recentred(test::sample_yard(0.25, 0.01, 0.1, 1).view(), true);
+  const auto source = recentred(test::sample_yard(0.25, 0.01, 0.1, 2).view(), true);
+  const ScoreSample sample = draw_sample(source, 200, rng);
+  ScoreSample leading = sample;
+  leading.points.resize(40), leading.normals.resize(40);
+  const FacingGrid grid(target, 0.2, kFacing);
+  const Transform pose = Transform::Identity();
+  ScoreCounts counts;
+  EXPECT_EQ(count_leading(grid, sample, 40, pose, -1, counts), count_common(grid, leading, pose, -1, counts));
+  EXPECT_EQ(count_leading(grid, sample, 1000, pose, -1, counts), count_common(grid, sample, pose, -1, counts));
+}
+
 TEST(Score, NearestFacingEqualsBruteForce) {
   const auto target = recentred(test::sample_yard(0.2, 0.01, 0.1, 1).view(), true);
   const auto probe = recentred(test::sample_yard(0.5, 0.05, 0.5, 2).view(), true);

@@ -132,6 +132,10 @@ Result<void> check(const SimulateOptions& o) {
                   fmt::format("one of {}", fmt::join(row.choices, ", ")));
     }
   }
+  if (o.min_range_m >= o.max_range_m) {
+    return fail(fmt::format("min_range_m = {} is not below max_range_m = {}", o.min_range_m, o.max_range_m), "simulate",
+                "every return would be cut");
+  }
   if (o.output.empty()) return fail("no output folder is named", "simulate", "-o DIR");
   return {};
 }

@@ -194,6 +194,7 @@ TEST_F(Simulate, RefusesWhatItCannotDo) {
   EXPECT_NE(error_of([](auto& o) { o.scene = "moon"; }).find("moon"), std::string::npos);
   EXPECT_NE(error_of([](auto& o) { o.stations = 0; }).find("stations"), std::string::npos);
   EXPECT_NE(error_of([](auto& o) { o.resolution_deg = std::nan(""); }).find("resolution_deg"), std::string::npos);
+  EXPECT_NE(error_of([](auto& o) { o.min_range_m = o.max_range_m = 5; }).find("min_range_m"), std::string::npos);
   EXPECT_NE(error_of([](auto& o) { o.output = ""; }).find("-o"), std::string::npos);
   EXPECT_NE(error_of([](auto& o) { o.output = "/dev/null/x"; }).find("/dev/null/x"), std::string::npos);
 }

@@ -47,6 +47,8 @@ const config::OptionTable<PairOptions>& pair_options_table() {
           {"congruent_hypotheses", &PairOptions::congruent_hypotheses, "", 0, 1000, {},
            "Best grown overlaps that Super4PCS registers again from their points alone; 0 = none.",
            "docs/stages/congruent.md"},
+          {"fine_hypotheses", &PairOptions::fine_hypotheses, "", 1, 10000, {},
+           "Best hypotheses that are aligned and weighed again on the finer sampling.", "docs/stages/verdict.md"},
           {"congruent_points", &PairOptions::congruent_points, "", 50, 100000, {},
            "Points of each grown overlap given to Super4PCS.", "docs/stages/congruent.md"},
           {"score_points", &PairOptions::score_points, "", 100, 1000000, {},
@@ -64,7 +66,7 @@ namespace {
 // Source points that the hypothesis puts near the target's surface, at most `max_points`: the grown overlap.
 std::vector<std::uint32_t> overlap_points(const ScanModel& from, const ScanModel& to, const Transform& to_from,
                                           std::size_t max_points) {
-  std::vector<std::uint32_t> all(from.scan.points.size());
+  std::vector<std::uint32_t> all(from.points.size());
   for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
   const Pose3f pose{to_from.linear().cast<float>(), to_from.translation().cast<float>()};
   const PointVerdicts verdicts = judge_points(from, to, pose, all, true);
@@ -84,7 +86,7 @@ struct OverlapCloud {
 
 OverlapCloud gathered(const ScanModel& model, std::span<const std::uint32_t> indices) {
   OverlapCloud cloud;
-  for (const std::uint32_t i : indices) cloud.points.push_back(model.scan.points[i]), cloud.normals.push_back(model.scan.normals[i]);
+  for (const std::uint32_t i : indices) cloud.points.push_back(model.points[i]), cloud.normals.push_back(model.normals[i]);
   return cloud;
 }
 
@@ -138,7 +140,7 @@ std::vector<Transform> transforms_of(const std::vector<Hypothesis>& hypotheses) 
 void fill_information(const ScanModel& source, const ScanModel& target, const Transform& t, PairEvidence& evidence, PairResult& result) {
   constexpr double kPatch = 10;          // neighbouring voxels see the same error: one independent residual in so many
   constexpr double kNoiseFloorVoxels = 0.05;
-  std::vector<std::uint32_t> all(source.scan.points.size());
+  std::vector<std::uint32_t> all(source.points.size());
   for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
   const Eigen::Vector3d c_source = source.centroid.cast<double>(), centre = t * c_source;
   NormalEquations e;
@@ -183,8 +185,8 @@ PairResult register_pair(const ScanProduct& source_product, const ScanProduct& t
     return result;
   }
   Stopwatch watch(result.seconds_by_stage);
-  const ScanModel source(source_product.sampled, source_product.features, source_product.regions);
-  const ScanModel target(target_product.sampled, target_product.features, target_product.regions);
+  const ScanModel source(source_product.sampled, source_product.features, source_product.regions, ModelLevel::coarse);
+  const ScanModel target(target_product.sampled, target_product.features, target_product.regions, ModelLevel::coarse);
   const double voxel = source_product.sampled.voxel_m;
   watch.lap("lookups");
 
@@ -255,8 +257,18 @@ PairResult register_pair(const ScanProduct& source_product, const ScanProduct& t
   if (trace) trace->congruent = transforms_of(hypotheses);
   watch.lap("congruent sets");
 
+  // The best few again on the finer sampling, where only what is right still fits.
+  const ScanModel fine_source(source_product.sampled, source_product.features, source_product.regions, ModelLevel::fine);
+  const ScanModel fine_target(target_product.sampled, target_product.features, target_product.regions, ModelLevel::fine);
+  if (hypotheses.size() > static_cast<std::size_t>(options.fine_hypotheses)) hypotheses.resize(static_cast<std::size_t>(options.fine_hypotheses));
+  polish_all(fine_source, fine_target, 2 * kPolishPoints, kPolishSteps, hypotheses);
+  keep_distinct(source, 2 * voxel, hypotheses);
+  weigh(fine_source, fine_target, score_points, hypotheses);
+  if (trace) trace->fine = transforms_of(hypotheses);
+  watch.lap("fine weighing");
   Hypothesis best = hypotheses.front();
-  polish(source, target, source.scan.points.size(), 5, best);
+  constexpr std::size_t kFinalPoints = 20000;
+  polish(fine_source, fine_target, kFinalPoints, 5, best);
   const Pose3f pose{best.target_from_source.linear().cast<float>(), best.target_from_source.translation().cast<float>()};
   const DirectedScore forward = score_direction(source, target, pose, {}, 1, false);
   const DirectedScore backward = score_direction(target, source, pose.inverse(), {}, 1, false);
@@ -271,10 +283,10 @@ PairResult register_pair(const ScanProduct& source_product, const ScanProduct& t
   evidence.rare_support = std::min(best.source.rare_support, best.target.rare_support);
   evidence.contradiction = std::max(static_cast<double>(forward.contradiction), static_cast<double>(backward.contradiction));
   evidence.against = std::max(static_cast<double>(forward.against), static_cast<double>(backward.against));
-  evidence.num_supported = std::min(best.source.support * static_cast<double>(source.scan.points.size()),
-                                    best.target.support * static_cast<double>(target.scan.points.size()));
+  evidence.num_supported = std::min(best.source.support * static_cast<double>(source.points.size()),
+                                    best.target.support * static_cast<double>(target.points.size()));
   evidence.free_space = source.scan.free_space.size > 0 || target.scan.free_space.size > 0;
-  fill_information(source, target, best.target_from_source, evidence, result);
+  fill_information(fine_source, fine_target, best.target_from_source, evidence, result);
   judge(evidence, options, result);
   watch.lap("verdict");
   return result;

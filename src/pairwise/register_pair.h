@@ -28,6 +28,7 @@ struct PairOptions {
   int max_seeds = 300;
   int max_hypotheses = 150;
   int congruent_hypotheses = 4;
+  int fine_hypotheses = 50;
   int congruent_points = 600;
   int score_points = 2000;
   double accept_probability = 0.95;
@@ -37,7 +38,7 @@ const config::OptionTable<PairOptions>& pair_options_table();
 
 /// What each stage proposed, best first: for experiments, see tools/bench.
 struct PairTrace {
-  std::vector<Transform> seeds, grown, polished, congruent;
+  std::vector<Transform> seeds, grown, polished, congruent, fine;
 };
 
 /// Registers source to target. `priors` are extra hypotheses (target_from_source between local frames) judged like the

@@ -15,12 +15,12 @@ void add_point_to_plane(const ScanModel& source, const ScanModel& target, const 
   Eigen::Matrix<float, 6, 6> a = Eigen::Matrix<float, 6, 6>::Zero();
   Eigen::Matrix<float, 6, 1> b = Eigen::Matrix<float, 6, 1>::Zero();
   for (const std::uint32_t i : sample) {
-    const Eigen::Vector3f p = rotation * source.scan.points[i] + translation;
+    const Eigen::Vector3f p = rotation * source.points[i] + translation;
     const std::int32_t j = lookup.near(p);
-    if (j < 0 || target.scan.variation[j] >= 1.0f) continue;
-    const Eigen::Vector3f& n = target.scan.normals[j];
-    if (n.dot(rotation * source.scan.normals[i]) < kMinFacing) continue;
-    const float r = n.dot(p - target.scan.points[j]);
+    if (j < 0 || target.variation[j] >= 1.0f) continue;
+    const Eigen::Vector3f& n = target.normals[j];
+    if (n.dot(rotation * source.normals[i]) < kMinFacing) continue;
+    const float r = n.dot(p - target.points[j]);
     const float ratio = r / gate_m;
     if (ratio * ratio >= 1) continue;
     const float w = (1 - ratio * ratio) * (1 - ratio * ratio);

@@ -11,11 +11,11 @@ namespace {
 // Up to `max_points` source indices spread over the scan, nearest to `centre` first.
 std::vector<std::uint32_t> by_distance(const ScanModel& model, const Eigen::Vector3f& centre, std::size_t max_points,
                                        std::vector<float>& distance) {
-  const std::size_t n = model.scan.points.size(), count = std::min(n, max_points);
+  const std::size_t n = model.points.size(), count = std::min(n, max_points);
   std::vector<std::pair<float, std::uint32_t>> order(count);
   for (std::size_t k = 0; k < count; ++k) {
     const auto i = static_cast<std::uint32_t>(k * n / count);
-    order[k] = {(model.scan.points[i] - centre).norm(), i};
+    order[k] = {(model.points[i] - centre).norm(), i};
   }
   std::sort(order.begin(), order.end());
   std::vector<std::uint32_t> sorted(count);
@@ -65,7 +65,7 @@ GrownOverlap grow(const ScanModel& source, const ScanModel& target, const Seed& 
   }
   out.target_from_source = orthonormalised(t);
   const Pose3f pose{out.target_from_source.linear().cast<float>(), out.target_from_source.translation().cast<float>()};
-  const auto stride = [](const ScanModel& m) { return std::max<std::size_t>(1, m.scan.points.size() / 1200); };
+  const auto stride = [](const ScanModel& m) { return std::max<std::size_t>(1, m.points.size() / 1200); };
   out.source_in_target = score_direction(source, target, pose, {}, stride(source), false);
   out.target_in_source = score_direction(target, source, pose.inverse(), {}, stride(target), false);
   out.score = ranking_score(out.source_in_target, out.target_in_source);

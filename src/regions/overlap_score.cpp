@@ -8,10 +8,10 @@ constexpr float kFreeToleranceVoxels = 1.5f;  // method.md, facts
 
 PointVerdict judge(const ScanModel& from, const ScanModel& to, const Pose3f& to_from, std::size_t i,
                    const SurfaceLookup& lookup, float tolerance_m) {
-  const Eigen::Vector3f p = to_from * from.scan.points[i];
+  const Eigen::Vector3f p = to_from * from.points[i];
   const std::int32_t j = lookup.near(p);
   if (j < 0) return to.seen_through(p, tolerance_m) ? PointVerdict::contradicted : PointVerdict::neutral;
-  const float facing = to.scan.normals[j].dot(to_from.rotation * from.scan.normals[i]);
+  const float facing = to.normals[j].dot(to_from.rotation * from.normals[i]);
   if (facing > kMinFacing) return PointVerdict::supported;
   return facing < -kMinFacing ? PointVerdict::against : PointVerdict::neutral;
 }
@@ -31,7 +31,7 @@ PointVerdicts judge_points(const ScanModel& from, const ScanModel& to, const Pos
 
 DirectedScore score_direction(const ScanModel& from, const ScanModel& to, const Pose3f& to_from,
                               std::span<const std::uint32_t> sample, std::size_t stride, bool coarse) {
-  const std::size_t n = sample.empty() ? from.scan.points.size() : sample.size();
+  const std::size_t n = sample.empty() ? from.points.size() : sample.size();
   std::size_t tried = 0, counts[4] = {0, 0, 0, 0};
   for (std::size_t k = 0; k < n; k += stride, ++tried) {
     const std::size_t i = sample.empty() ? k : sample[k];

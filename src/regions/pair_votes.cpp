@@ -97,7 +97,7 @@ std::vector<Seed> vote_seeds_by_pairs(const ScanModel& source, const ScanModel& 
                                       const PairVoteOptions& options) {
   const auto& keypoints = source.features.keypoints;
   std::vector<Eigen::Vector3f> points(keypoints.size());
-  for (std::size_t k = 0; k < keypoints.size(); ++k) points[k] = source.scan.points[keypoints[k]];
+  for (std::size_t k = 0; k < keypoints.size(); ++k) points[k] = source.points[keypoints[k]];
   std::vector<std::uint32_t> popularity(target.features.keypoints.size(), 0);
   const std::uint32_t used = std::min(options.matches_per_keypoint, matches.count);
   for (std::size_t k = 0; k < keypoints.size(); ++k)
@@ -115,7 +115,7 @@ std::vector<Seed> vote_seeds_by_pairs(const ScanModel& source, const ScanModel& 
       for (std::uint32_t rank = 0; rank < used; ++rank) {
         const std::uint32_t t = matches.target[static_cast<std::size_t>(k) * matches.count + rank];
         const std::uint32_t i = keypoints[k], j = target.features.keypoints[t];
-        window_matches.push_back({source.scan.points[i], source.scan.normals[i], target.scan.points[j], target.scan.normals[j],
+        window_matches.push_back({source.points[i], source.normals[i], target.points[j], target.normals[j],
                                   matches.similarity[static_cast<std::size_t>(k) * matches.count + rank],
                                   1.0f / std::sqrt(static_cast<float>(popularity[t])), members});
       }

@@ -28,8 +28,8 @@ std::vector<Oriented> aligned_keypoints(const ScanModel& model, const Eigen::Mat
   std::vector<Oriented> out(model.features.keypoints.size());
   for (std::size_t k = 0; k < out.size(); ++k) {
     const std::uint32_t i = model.features.keypoints[k];
-    const Eigen::Vector3f n = z_from_axis * model.scan.normals[i];
-    out[k].p = z_from_axis * model.scan.points[i];
+    const Eigen::Vector3f n = z_from_axis * model.normals[i];
+    out[k].p = z_from_axis * model.points[i];
     out[k].along = n.z();
     out[k].heading = std::atan2(n.y(), n.x());
     out[k].usable = std::hypot(n.x(), n.y()) > kMinHorizontal;

@@ -6,19 +6,21 @@
 
 namespace isthmus {
 
-ScanModel::ScanModel(const SampledScan& sampled, const FeatureCloud& cloud, const RegionMap& map)
-    : scan(sampled),
-      features(cloud),
-      regions(map),
-      voxel_m(static_cast<float>(sampled.voxel_m)),
-      fine(sampled.points, voxel_m, 1),
-      coarse(sampled.points, 2 * voxel_m, 1) {
-  if (scan.points.empty()) return;
+ScanModel::ScanModel(const SampledScan& sampled, const FeatureCloud& cloud, const RegionMap& map, ModelLevel level)
+    : scan(sampled), features(cloud), regions(map) {
+  const bool use_fine = level == ModelLevel::fine && !sampled.fine.points.empty();
+  voxel_m = static_cast<float>(use_fine ? sampled.fine.voxel_m : sampled.voxel_m);
+  points = use_fine ? sampled.fine.points : sampled.points;
+  normals = use_fine ? sampled.fine.normals : sampled.normals;
+  variation = use_fine ? sampled.fine.variation : sampled.variation;
+  if (points.empty()) return;
+  fine = SurfaceLookup(points, voxel_m, use_fine ? 2 : 1);  // about the same reach in metres at both levels
+  if (level == ModelLevel::coarse) coarse = SurfaceLookup(points, 2 * voxel_m, 1);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const auto& p : scan.points) sum += p.cast<double>();
-  centroid = (sum / static_cast<double>(scan.points.size())).cast<float>();
-  std::vector<float> distance(scan.points.size());
-  for (std::size_t i = 0; i < distance.size(); ++i) distance[i] = (scan.points[i] - centroid).norm();
+  for (const auto& p : points) sum += p.cast<double>();
+  centroid = (sum / static_cast<double>(points.size())).cast<float>();
+  std::vector<float> distance(points.size());
+  for (std::size_t i = 0; i < distance.size(); ++i) distance[i] = (points[i] - centroid).norm();
   const auto k = static_cast<std::ptrdiff_t>(distance.size() * 95 / 100);
   std::nth_element(distance.begin(), distance.begin() + k, distance.end());
   extent_m = distance[static_cast<std::size_t>(k)];

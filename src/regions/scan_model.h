@@ -1,6 +1,8 @@
 // What a pair needs to ask of a scan thousands of times: is there a surface here, was this place seen through?
 #pragma once
 
+#include <span>
+
 #include "features/feature_cloud.h"
 #include "geometry/surface_lookup.h"
 #include "regions/region_map.h"
@@ -8,17 +10,24 @@
 
 namespace isthmus {
 
+enum class ModelLevel : std::uint8_t {
+  coarse,  ///< the scan's voxels: features, regions, growth
+  fine,    ///< the finer sampling, or the coarse one where there is none: last alignment and evidence
+};
+
 /// Lookups built once per scan and pair session; keeps references to the scan's products.
 class ScanModel {
  public:
-  ScanModel(const SampledScan& scan, const FeatureCloud& features, const RegionMap& regions);
+  ScanModel(const SampledScan& scan, const FeatureCloud& features, const RegionMap& regions, ModelLevel level);
 
   const SampledScan& scan;
   const FeatureCloud& features;
   const RegionMap& regions;
-  float voxel_m;
-  SurfaceLookup fine;    ///< nearest point within about 1.5 voxels
-  SurfaceLookup coarse;  ///< nearest point within about 3 voxels
+  float voxel_m;  ///< of this level
+  std::span<const Eigen::Vector3f> points, normals;
+  std::span<const float> variation;
+  SurfaceLookup fine;    ///< nearest point within about 1.5 coarse voxels
+  SurfaceLookup coarse;  ///< nearest point within about 3 voxels; only at the coarse level
   Eigen::Vector3f centroid = Eigen::Vector3f::Zero();
   float extent_m = 0;    ///< radius about the centroid that holds 95 % of the points
 

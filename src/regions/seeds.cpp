@@ -14,8 +14,8 @@ std::vector<std::vector<std::uint32_t>> samples_around_regions(const ScanModel& 
   const float sq_radius = options.radius_voxels * options.radius_voxels * model.voxel_m * model.voxel_m;
   parallel_for_index(regions.size(), 4, [&](std::size_t r) {
     std::vector<std::uint32_t> near;
-    for (std::uint32_t i = 0; i < model.scan.points.size(); ++i)
-      if ((model.scan.points[i] - regions[r].centre).squaredNorm() < sq_radius) near.push_back(i);
+    for (std::uint32_t i = 0; i < model.points.size(); ++i)
+      if ((model.points[i] - regions[r].centre).squaredNorm() < sq_radius) near.push_back(i);
     const std::size_t n = std::min(options.max_points, near.size());
     for (std::size_t k = 0; k < n; ++k) samples[r].push_back(near[k * near.size() / n]);
   });

@@ -25,6 +25,16 @@ struct FreeSpace {
   void fields(F&& f) { f(size), f(nearest_m); }
 };
 
+/// A finer sampling of the same surfaces, for the last alignment and the evidence.
+struct SurfacePoints {
+  double voxel_m = 0;
+  std::vector<Eigen::Vector3f> points;   ///< local frame, metres, sorted by voxel index
+  std::vector<Eigen::Vector3f> normals;  ///< unit, oriented as those of the scan
+  std::vector<float> variation;          ///< as in SampledScan
+  template <class F>
+  void fields(F&& f) { f(voxel_m), f(points), f(normals), f(variation); }
+};
+
 /// Voxel centroids with normals, in the scan's local frame (see io/scan_reader.h), metres.
 struct SampledScan {
   double voxel_m = 0;                                          ///< edge of the sampling voxels
@@ -36,6 +46,7 @@ struct SampledScan {
   std::vector<Eigen::Vector3f> normals;                        ///< unit, oriented to the station
   std::vector<float> variation;                                ///< surface variation l0/(l0+l1+l2): 0 plane, 1/3 scatter; 1: no normal
   std::vector<std::uint32_t> counts;                           ///< raw points per voxel
+  SurfacePoints fine;                                          ///< empty where the scan is too sparse for a finer voxel
   FreeSpace free_space;                                        ///< empty when the station is unknown
   double spacing_m = 0;                                        ///< median distance to the nearest neighbour of raw points
   std::uint64_t num_read = 0;                                  ///< points in the file
@@ -45,7 +56,7 @@ struct SampledScan {
 
   template <class F>
   void fields(F&& f) {
-    f(voxel_m), f(local_origin_in_scan), f(station_kind), f(station), f(blocked_share), f(points), f(normals), f(variation), f(counts), f(free_space);
+    f(voxel_m), f(local_origin_in_scan), f(station_kind), f(station), f(blocked_share), f(points), f(normals), f(variation), f(counts), f(fine), f(free_space);
     f(spacing_m), f(num_read), f(num_dropped), f(no_return_range_m), f(notes);
   }
 };

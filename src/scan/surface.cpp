@@ -106,4 +106,16 @@ void orient_outwards(std::span<const Eigen::Vector3f> points, float voxel_m, std
   }
 }
 
+void orient_like(std::span<const Eigen::Vector3f> coarse_points, std::span<const Eigen::Vector3f> coarse_normals, float voxel_m,
+                 std::span<const Eigen::Vector3f> points, std::span<Eigen::Vector3f> normals) {
+  const PointGrid grid(coarse_points, 2 * voxel_m);
+  parallel_for_index(points.size(), 256, [&](std::size_t i) {
+    float vote = 0;
+    grid.for_each_within(points[i], 2 * voxel_m, [&](std::uint32_t j, float sq_distance) {
+      vote += coarse_normals[j].dot(normals[i]) / (sq_distance + 0.01f * voxel_m * voxel_m);
+    });
+    if (vote < 0) normals[i] = -normals[i];
+  });
+}
+
 }  // namespace isthmus

@@ -32,4 +32,8 @@ void orient_to_station(std::span<const Eigen::Vector3f> points, const Eigen::Vec
 /// then each connected part is turned so that most of it faces away from the centroid of all points.
 void orient_outwards(std::span<const Eigen::Vector3f> points, float voxel_m, std::span<Eigen::Vector3f> normals);
 
+/// Gives each of `normals` the sign of the oriented normals around it, nearest coarse point first.
+void orient_like(std::span<const Eigen::Vector3f> coarse_points, std::span<const Eigen::Vector3f> coarse_normals, float voxel_m,
+                 std::span<const Eigen::Vector3f> points, std::span<Eigen::Vector3f> normals);
+
 }  // namespace isthmus

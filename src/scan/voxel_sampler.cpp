@@ -15,6 +15,8 @@ namespace isthmus {
 namespace {
 
 constexpr std::uint32_t kCubeSize = 240;          // 0.4 degree cells; coarser where the scan is
+constexpr int kFineRatio = 2;                     // fine voxels a coarse voxel's edge: what is accumulated while streaming
+constexpr std::uint32_t kMinFineCount = 2;        // median raw points a fine voxel below which the fine level is left out
 constexpr std::uint32_t kMinVoxelNeighbours = 4;  // fewer voxels around (itself included): a stray point
 constexpr double kLogRangeStep = 2e-4;            // relative width of a bin of the range histogram
 constexpr double kSmallestRange = 1e-5;
@@ -67,7 +69,8 @@ std::optional<double> find_no_return_range(const std::vector<std::uint32_t>& his
 
 struct VoxelSampler::State {
   SamplingOptions options;
-  double voxel_m;
+  double voxel_m;       // of the scan
+  double fine_voxel_m;  // of the accumulators
   Eigen::Vector3d local_origin_in_scan;
   std::optional<Eigen::Vector3f> candidate_station;  // local frame
   bool station_from_file = false;
@@ -137,6 +140,7 @@ VoxelSampler::VoxelSampler(const ScanHeader& header, double voxel_m, const Sampl
     : state_(std::make_unique<State>()) {
   state_->options = options;
   state_->voxel_m = voxel_m;
+  state_->fine_voxel_m = voxel_m / kFineRatio;
   state_->local_origin_in_scan = header.local_origin_in_scan;
   state_->station_from_file = header.station_in_scan.has_value();
   const Eigen::Vector3d station =
@@ -158,8 +162,8 @@ std::size_t VoxelSampler::bytes() const {
 
 void VoxelSampler::add(const PointChunk& chunk) {
   State& s = *state_;
-  const double inverse = 1.0 / s.voxel_m;
-  const double limit = (static_cast<double>(kKeyOffset) - 1) * s.voxel_m;
+  const double inverse = 1.0 / s.fine_voxel_m;
+  const double limit = (static_cast<double>(kKeyOffset) - kFineRatio) * s.fine_voxel_m;
   const Eigen::Vector3f zero_in_local = (-s.local_origin_in_scan).cast<float>();
   const Eigen::Vector3f station = s.candidate_station.value_or(Eigen::Vector3f::Zero());
   for (const Eigen::Vector3f& p : chunk.points) {
@@ -172,7 +176,7 @@ void VoxelSampler::add(const PointChunk& chunk) {
     const Eigen::Matrix<std::int64_t, 3, 1> cell = (q * inverse).array().floor().cast<std::int64_t>();
     const std::uint64_t key = voxel_key(cell);
     Voxel& v = s.voxel(key);
-    const Eigen::Vector3d d = q - (cell.cast<double>().array() + 0.5).matrix() * s.voxel_m;
+    const Eigen::Vector3d d = q - (cell.cast<double>().array() + 0.5).matrix() * s.fine_voxel_m;
     v.sum += d;
     v.squares += (Eigen::Matrix<double, 6, 1>() << d[0] * d[0], d[0] * d[1], d[0] * d[2], d[1] * d[1], d[1] * d[2],
                   d[2] * d[2]).finished();
@@ -205,29 +209,55 @@ VoxelMoments moments_of(const Voxel& v, double voxel_m) {
   return out;
 }
 
-// The scan without stray voxels, in the order of the voxel keys.
-void fill(SampledScan& out, std::vector<Voxel>& voxels, double voxel_m) {
-  std::sort(voxels.begin(), voxels.end(), [](const Voxel& a, const Voxel& b) { return a.key < b.key; });
+// Merges fine voxels into the coarse ones they lie in; moments add up after a shift to the coarse centre.
+std::vector<Voxel> merged(const std::vector<Voxel>& fine, double fine_voxel_m) {
+  const auto coarse_part = [](std::uint64_t key, int shift) {
+    const auto cell = static_cast<std::int64_t>(key >> shift & 0x1fffff) - kKeyOffset;
+    return (cell >= 0 ? cell : cell - (kFineRatio - 1)) / kFineRatio;  // floor division
+  };
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order(fine.size());
+  for (std::uint32_t i = 0; i < fine.size(); ++i)
+    order[i] = {voxel_key({coarse_part(fine[i].key, 42), coarse_part(fine[i].key, 21), coarse_part(fine[i].key, 0)}), i};
+  std::sort(order.begin(), order.end());
+  std::vector<Voxel> out;
+  for (const auto& [key, i] : order) {
+    if (out.empty() || out.back().key != key) out.emplace_back().key = key;
+    const Voxel& f = fine[i];
+    Voxel& v = out.back();
+    const Eigen::Vector3d d = voxel_centre(f.key, fine_voxel_m) - voxel_centre(key, fine_voxel_m * kFineRatio);
+    const double n = f.count;
+    const auto shifted = [&](int a, int b) { return d[a] * f.sum[b] + d[b] * f.sum[a] + n * d[a] * d[b]; };
+    v.squares += f.squares + (Eigen::Matrix<double, 6, 1>() << shifted(0, 0), shifted(0, 1), shifted(0, 2), shifted(1, 1),
+                              shifted(1, 2), shifted(2, 2)).finished();
+    v.sum += f.sum + n * d;
+    v.count += f.count;
+  }
+  return out;
+}
+
+// Points, normals and variation of the voxels that belong to a surface; returns the index of each kept voxel.
+std::vector<std::uint32_t> fill(SurfacePoints& out, const std::vector<Voxel>& voxels, double voxel_m) {
   std::vector<VoxelMoments> moments(voxels.size());
   for (std::size_t i = 0; i < voxels.size(); ++i) moments[i] = moments_of(voxels[i], voxel_m);
-  SurfaceEstimate surface = estimate_surface(moments, static_cast<float>(voxel_m));
-  for (std::size_t i = 0; i < voxels.size(); ++i) {
-    if (surface.neighbours[i] < kMinVoxelNeighbours && surface.variation[i] >= 1.0f) {
-      out.num_dropped += voxels[i].count;
-      continue;
-    }
+  const SurfaceEstimate surface = estimate_surface(moments, static_cast<float>(voxel_m));
+  out.voxel_m = voxel_m;
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t i = 0; i < voxels.size(); ++i) {
+    if (surface.neighbours[i] < kMinVoxelNeighbours && surface.variation[i] >= 1.0f) continue;  // a stray point
+    kept.push_back(i);
     out.points.push_back(moments[i].mean);
     out.normals.push_back(surface.normals[i]);
     out.variation.push_back(surface.variation[i]);
-    out.counts.push_back(voxels[i].count);
   }
+  return kept;
 }
 
-double typical_spacing(const SampledScan& scan) {
-  if (scan.counts.empty()) return 0;
-  std::vector<std::uint32_t> counts = scan.counts;
+std::uint32_t median_count(const std::vector<Voxel>& voxels) {
+  if (voxels.empty()) return 0;
+  std::vector<std::uint32_t> counts;
+  for (const Voxel& v : voxels) counts.push_back(v.count);
   std::nth_element(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2), counts.end());
-  return scan.voxel_m / std::sqrt(static_cast<double>(counts[counts.size() / 2]));
+  return counts[counts.size() / 2];
 }
 
 }  // namespace
@@ -255,13 +285,24 @@ Result<SampledScan> VoxelSampler::finish() {
       out.notes.push_back(fmt::format("dropped a shell of no-return points at {:.4g} m", *out.no_return_range_m));
     }
   }
-  fill(out, s.voxels, s.voxel_m);
+  std::sort(s.voxels.begin(), s.voxels.end(), [](const Voxel& a, const Voxel& b) { return a.key < b.key; });
+  {
+    const std::vector<Voxel> coarse = merged(s.voxels, s.fine_voxel_m);
+    SurfacePoints surface;
+    const std::vector<std::uint32_t> kept = fill(surface, coarse, s.voxel_m);
+    for (const Voxel& v : coarse) out.num_dropped += v.count;
+    for (const std::uint32_t i : kept) out.counts.push_back(coarse[i].count), out.num_dropped -= coarse[i].count;
+    out.points = std::move(surface.points);
+    out.normals = std::move(surface.normals);
+    out.variation = std::move(surface.variation);
+    out.spacing_m = s.voxel_m / std::sqrt(std::max(1.0, static_cast<double>(median_count(coarse))));
+  }
   constexpr std::size_t kMinVoxels = 10;
   if (out.points.size() < kMinVoxels)
     return fail(fmt::format("only {} voxels of {:.4g} m hold a surface, {} of {} points are usable", out.points.size(),
                             s.voxel_m, s.num_read - out.num_dropped, s.num_read),
                 "", "check the file's content and unit, or set sampling.voxel_m");
-  out.spacing_m = typical_spacing(out);
+  if (median_count(s.voxels) >= kMinFineCount) fill(out.fine, s.voxels, s.fine_voxel_m);
   StationCheck check;
   if (s.candidate_station) check = check_station(out.points, out.normals, static_cast<float>(s.voxel_m), *s.candidate_station);
   const bool object = check.median_range_m < kObjectRangeM && check.concentration > kObjectConcentration;
@@ -272,9 +313,11 @@ Result<SampledScan> VoxelSampler::finish() {
     out.station = *s.candidate_station;
     out.blocked_share = check.blocked;
     orient_to_station(out.points, out.station, out.normals);
+    orient_to_station(out.fine.points, out.station, out.fine.normals);
     out.free_space = dilated_free_space(at_scan_resolution(s.raw));
   } else {
     orient_outwards(out.points, static_cast<float>(s.voxel_m), out.normals);
+    orient_like(out.points, out.normals, static_cast<float>(s.voxel_m), out.fine.points, out.fine.normals);
     out.notes.push_back(s.candidate_station
                             ? fmt::format("the origin is not the station ({:.0f} % of the sight lines blocked, "
                                           "concentration {:.2f}): free space is not used",

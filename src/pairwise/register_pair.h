@@ -31,7 +31,7 @@ struct PairOptions {
   int fine_hypotheses = 50;
   int congruent_points = 600;
   int score_points = 2000;
-  double accept_probability = 0.95;
+  double accept_probability = 0.97;
   double ambiguous_probability = 0.05;
 };
 const config::OptionTable<PairOptions>& pair_options_table();

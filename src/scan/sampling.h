@@ -13,7 +13,7 @@ namespace isthmus {
 
 struct SamplingOptions {
   std::optional<double> voxel_m;   ///< absent: from the scans, see automatic_voxel_m()
-  int target_points = 20000;       ///< voxel points a scan should be reduced to when the voxel is automatic
+  int target_points = 15000;       ///< voxel points a scan should be reduced to when the voxel is automatic
   bool drop_no_return = true;
   std::string station = "auto";    ///< auto, origin, unknown
 };

@@ -10,8 +10,9 @@
 namespace isthmus {
 
 /// Cells of edge `cell_m` in blocks of 8 x 8 x 8, allocated only near points. A cell knows the indexed point nearest to its
-/// centre among those within reach_cells cells, so a lookup costs two memory reads and its answer is the nearest point up
-/// to half a cell diagonal. Deterministic; ties go to the smaller index.
+/// centre among those within reach_cells + 0.5 cells of it, so a lookup costs two memory reads. The query lies within half a
+/// cell diagonal of that centre: the answer is at most a whole diagonal farther than the nearest point. Deterministic; ties
+/// go to the smaller index.
 class SurfaceLookup {
  public:
   SurfaceLookup() = default;

@@ -1,5 +1,6 @@
 #include "geometry/transform.h"
 
+#include <Eigen/SVD>
 #include <cmath>
 
 namespace isthmus {
@@ -20,8 +21,11 @@ Eigen::Matrix3d rotation_from_vector(const Eigen::Vector3d& v) {
 }
 
 Transform orthonormalised(const Transform& t) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(t.linear(), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3d u = svd.matrixU();
+  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);  // the smallest singular value pays
   Transform out = t;
-  out.linear() = Eigen::Quaterniond(t.linear()).normalized().toRotationMatrix();
+  out.linear() = u * svd.matrixV().transpose();
   return out;
 }
 

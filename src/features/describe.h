@@ -11,7 +11,7 @@ struct FeatureOptions {
   double iss_radius_voxels = 5.0;
   double iss_gamma = 0.95;
   double keypoint_spacing_voxels = 2.0;
-  int max_keypoints = 5000;
+  int max_keypoints = 4000;
   double radius_voxels = 5.0;
   double large_radius_voxels = 10.0;
 };

@@ -98,7 +98,7 @@ class VoteTable {
 Peak mean_shift(const std::vector<Vote>& votes, const Vote& start, float position_m, float yaw_rad,
                 std::vector<float>& best_of_keypoint) {
   Peak peak{start.centre, start.yaw, 0};
-  for (int step = 0; step < 3; ++step) {
+  for (int step = 0; step < 2; ++step) {
     std::fill(best_of_keypoint.begin(), best_of_keypoint.end(), 0.0f);
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     float yaw_sum = 0, weight_sum = 0;
@@ -182,7 +182,7 @@ std::vector<Seed> vote_seeds_about_axis(const ScanModel& source, const ScanModel
     }
     std::vector<float> best_of_keypoint(members.size());
     std::vector<Peak> peaks;
-    for (const auto& [weight, first] : table.heaviest(3 * options.peaks_per_region)) {
+    for (const auto& [weight, first] : table.heaviest(2 * options.peaks_per_region)) {
       const Peak peak = mean_shift(votes, votes[first], 1.2f * cell, 1.2f * options.yaw_cell_rad, best_of_keypoint);
       const bool known = std::any_of(peaks.begin(), peaks.end(), [&](const Peak& p) {
         return (p.centre - peak.centre).norm() < cell && std::abs(wrapped(p.yaw - peak.yaw)) < options.yaw_cell_rad;

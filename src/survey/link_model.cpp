@@ -15,6 +15,7 @@ namespace {
 // narrow enough to keep every matrix regular.
 constexpr double kCeilingVoxels = 100.0;
 constexpr double kCeilingRad = 0.5;
+constexpr double kTightFloors = 8.0;
 // How far a rotation part may be from orthonormal before the measurement counts as broken rather than rounded.
 constexpr double kRotationTolerance = 1e-6;
 
@@ -72,6 +73,10 @@ Vector6d disagreement(const Transform& measured, const Transform& predicted) {
   return d;
 }
 
+bool is_tight(const Vector6d& d, const Measurement& m) {
+  return d.head<3>().norm() <= kTightFloors * m.floor_m && d.tail<3>().norm() <= kTightFloors * m.floor_rad;
+}
+
 double chi2_of(const Vector6d& d, const Matrix6d& covariance) { return d.dot(covariance.ldlt().solve(d)); }
 
 NoiseModel noise_model(const PoseGraph& graph, const GraphScan& source, const SolveOptions& options) {
@@ -103,7 +108,10 @@ MeasurementOrReason measurement_of(const Link& link, const GraphScan& source, co
 
   Measurement m;
   m.log_odds = link.guided ? 0.0 : clipped_log_odds(r.probability);
+  m.accepted = r.verdict == Verdict::accepted;
   m.votes = !link.guided;
+  m.floor_m = noise.floor_m;
+  m.floor_rad = noise.floor_rad;
   m.overlap = r.overlap;
   const Transform local_from_centred(Eigen::Translation3d(source.centre));
   m.target_from_source.b_from_a = Eigen::Translation3d(-target.centre) * *r.target_from_source * local_from_centred;

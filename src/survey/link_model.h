@@ -21,9 +21,12 @@ struct Measurement {
   int target = 0;                                ///< node
   Relative target_from_source;                   ///< between centred frames, noise floor included
   Matrix6d sqrt_information = Matrix6d::Zero();  ///< W with W' W = covariance^-1
-  double log_odds = 0;  ///< log p/(1-p) of the pair stage's probability, clipped; 0 for guided links
-  bool votes = true;    ///< false for guided links
-  double overlap = 0;   ///< breaks ties
+  double floor_m = 0;                            ///< noise floor at the source's centre: the unit of tight agreement
+  double floor_rad = 0;                          ///< the same for the rotation
+  double log_odds = 0;    ///< log p/(1-p) of the pair stage's probability, clipped; 0 for guided links
+  bool accepted = false;  ///< by the pair stage; otherwise ambiguous
+  bool votes = true;      ///< false for guided links
+  double overlap = 0;     ///< breaks ties
 };
 
 /// Adjoint of a transform for (translation, rotation) vectors: T exp(d) T^-1 = exp(Ad(T) d).
@@ -35,6 +38,10 @@ Relative inverse(const Relative& b_from_a);
 
 /// Translation and rotation vector of measured^-1 * predicted: the right perturbation that turns one into the other.
 Vector6d disagreement(const Transform& measured, const Transform& predicted);
+
+/// Whether d is so small that agreement is evidence, whatever the uncertainties: within eight noise floors (four voxels
+/// by default) at the centre of the measurement's source and, for the rotation, at the scan's radius.
+bool is_tight(const Vector6d& d, const Measurement& m);
 
 /// d' C^-1 d
 double chi2_of(const Vector6d& d, const Matrix6d& covariance);

@@ -31,7 +31,7 @@ const config::OptionTable<SolveOptions>& solve_options_table() {
            10,
            {},
            "The same for rotations where the scan's radius is not known.",
-           "a quarter voxel of 0.2 m at 30 m"},
+           "half a voxel of 0.2 m at 30 m"},
           {"agreement_chi2",
            &O::agreement_chi2,
            "",
@@ -64,7 +64,8 @@ const config::OptionTable<SolveOptions>& solve_options_table() {
            0.5,
            {},
            "How often a wrong link agrees with a loop by chance or because the scene repeats itself.",
-           "assumed, generous towards repeated facades; docs/stages/pose_graph.md"},
+           "measured: 1 of 546 triangles with two or more wrong links closed within 4 voxels; "
+           "docs/stages/pose_graph.md"},
           {"promote_probability",
            &O::promote_probability,
            "",

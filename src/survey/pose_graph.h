@@ -40,12 +40,12 @@ struct PoseGraph {
 };
 
 struct SolveOptions {
-  double noise_voxels = 0.25;
-  double noise_deg = 0.1;
+  double noise_voxels = 0.5;
+  double noise_deg = 0.2;
   double agreement_chi2 = 22.46;
   double undecided_wrong_probability = 0.3;
   bool promote_ambiguous = true;
-  double chance_closure = 0.01;
+  double chance_closure = 0.003;
   double promote_probability = 0.95;
 };
 const config::OptionTable<SolveOptions>& solve_options_table();
@@ -92,10 +92,9 @@ struct Solution {
 /// target_from_source between local frames as the solved poses say, if both scans are in one component.
 std::optional<Transform> predicted_target_from_source(const Solution& solution, int source, int target);
 
-/// Rejects links that contradict the loops, promotes ambiguous links that the loops confirm, optimises the poses
-/// robustly and finds the components. Method and sources: docs/stages/pose_graph.md. Runs in one thread; the same bytes
-/// for any order of scans and links. Never fails: a link that cannot be used is returned with verdict failed and the
-/// reason.
+/// Lets links judge each other (loops reject accepted ones and confirm ambiguous ones), optimises the poses robustly
+/// and finds the components. Method and sources: docs/stages/pose_graph.md. Runs in one thread; the same bytes for any
+/// order of scans and links. Never fails: a link that cannot be used is returned with verdict failed and the reason.
 Solution solve(const PoseGraph& graph, const SolveOptions& options);
 
 }  // namespace isthmus

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "survey/loop_consistency.h"
+#include "survey/consensus.h"
 #include "survey/optimise.h"
 #include "survey/pose_graph.h"
 #include "survey/pose_uncertainty.h"
@@ -30,7 +30,6 @@ struct Solver {
   const SolveOptions& options;
   double voxel_m;
   std::vector<GraphScan> scans;
-  std::vector<NoiseModel> noise;          // per node
   std::vector<SolvedLink> links;          // sorted
   std::vector<Measurement> measurements;  // of links measured accepted or ambiguous
   std::vector<int> tree;                  // measurements that most loops agree with, ascending
@@ -84,13 +83,10 @@ bool link_less(const SolvedLink& a, const SolvedLink& b) {
 }
 
 Solver prepared(const PoseGraph& graph, const SolveOptions& options) {
-  Solver s{options, graph.voxel_m, graph.scans, {}, {}, {}, {}, {}, {}};
+  Solver s{options, graph.voxel_m, graph.scans, {}, {}, {}, {}, {}};
   std::sort(s.scans.begin(), s.scans.end(), [](const GraphScan& a, const GraphScan& b) { return a.id < b.id; });
   std::map<int, int> node_of_id;
-  for (int i = 0; i < s.num_nodes(); ++i) {
-    node_of_id.emplace(s.scans[i].id, i);
-    s.noise.push_back(noise_model(graph, s.scans[i], options));
-  }
+  for (int i = 0; i < s.num_nodes(); ++i) node_of_id.emplace(s.scans[i].id, i);
   for (const Link& link : graph.links) s.links.push_back({link, link.result.verdict, {}, {}, false});
   std::stable_sort(s.links.begin(), s.links.end(), link_less);
   for (std::size_t k = 0; k < s.links.size(); ++k) {
@@ -102,7 +98,8 @@ Solver prepared(const PoseGraph& graph, const SolveOptions& options) {
     if (source == node_of_id.end() || target == node_of_id.end() || source == target)
       m.reason = "does not join two scans of this survey";
     else
-      m = measurement_of(s.links[k].link, s.scans[source->second], s.scans[target->second], s.noise[source->second]);
+      m = measurement_of(s.links[k].link, s.scans[source->second], s.scans[target->second],
+                         noise_model(graph, s.scans[source->second], options));
     if (!m.reason.empty()) {
       r.verdict = Verdict::failed;
       r.reason = "the link cannot be used: " + m.reason;
@@ -116,22 +113,33 @@ Solver prepared(const PoseGraph& graph, const SolveOptions& options) {
   return s;
 }
 
-void reject_by_loops(Solver& s) {
-  const std::vector<int> accepted = s.with_verdict(Verdict::accepted);
-  std::vector<Measurement> subset;
-  for (const int e : accepted) subset.push_back(s.measurements[e]);
-  const LoopJudgement judgement = judge_loops(s.num_nodes(), subset, s.options);
-  for (const int k : judgement.tree) s.tree.push_back(accepted[k]);
-  for (const LoopRejection& r : judgement.rejections) {
+std::string list_of_links(const Solver& s, const std::vector<int>& edges) {
+  std::string text;
+  for (const int e : edges)
+    text += fmt::format("{}{} - {}", text.empty() ? "" : ", ", name_of(s.scans[s.measurements[e].source]),
+                        name_of(s.scans[s.measurements[e].target]));
+  return text;
+}
+
+void promote(Solver& s, int e, const std::string& why) {
+  s.judge(e, Verdict::accepted, fmt::format("{} (by itself ambiguous: {})", why, s.link_of(e).link.result.reason));
+}
+
+void let_links_judge_each_other(Solver& s) {
+  Consensus consensus = find_consensus(s.num_nodes(), s.measurements, s.options);
+  s.tree = std::move(consensus.tree);
+  for (const LoopRejection& r : consensus.rejections) {
     const std::string loop = loop_text(s, r.error.loop);
     const std::string error = error_text(r.error.rotation_rad, r.error.translation_m);
-    s.judge(accepted[r.measurement], Verdict::rejected,
+    s.judge(r.measurement, Verdict::rejected,
             r.undecided ? fmt::format("the loop {} misses by {}, and nothing else tells which of its links is wrong",
                                       loop, error)
                         : fmt::format("disagrees with the loop {} by {}", loop, error));
     if (r.undecided)
       s.warnings.push_back(fmt::format("the loop {} misses by {}: its least certain links were rejected", loop, error));
   }
+  for (const Promotion& p : consensus.promotions)
+    promote(s, p.measurement, "agrees with " + list_of_links(s, p.confirmed_by));
 }
 
 /// Spanning forest of the accepted links: the tree that the loops chose, completed by probable links.
@@ -202,48 +210,28 @@ bool optimise_once(Solver& s) {
   return outliers.empty();
 }
 
-void accept_promoted(Solver& s, const Promotion& p) {
-  const Measurement& m = s.measurements[p.measurement];
-  const std::string own = s.link_of(p.measurement).link.result.reason;
-  std::string why;
-  if (p.joins) {
-    for (const int e : p.confirmed_by)
-      why += fmt::format("{}{} - {}", why.empty() ? "" : ", ", name_of(s.scans[s.measurements[e].source]),
-                         name_of(s.scans[s.measurements[e].target]));
-    why = "agrees with " + why;
-  } else {
-    why = "agrees with the loop " + loop_text(s, nodes_of_path(s.measurements, p.confirmed_by, m.source));
-  }
-  s.judge(p.measurement, Verdict::accepted, fmt::format("{} (by itself ambiguous: {})", why, own));
-}
-
-/// Accepts ambiguous links that the poses, or each other, confirm; true if any was.
-bool promote(Solver& s) {
+/// Accepts ambiguous links that the poses confirm; true if any was.
+bool promote_confirmed(Solver& s) {
   if (!s.options.promote_ambiguous) return false;
-  const std::vector<int> ambiguous = s.with_verdict(Verdict::ambiguous);
-  if (ambiguous.empty()) return false;
-  // Rejected and failed measurements take no part: only their places are kept.
-  std::vector<int> kept;
+  std::vector<int> kept;  // rejected and failed measurements take no part
   std::vector<Measurement> subset;
   SolvedParts parts;
   for (int e = 0; e < static_cast<int>(s.measurements.size()); ++e) {
     if (s.verdict(e) != Verdict::accepted && s.verdict(e) != Verdict::ambiguous) continue;
     kept.push_back(e);
     subset.push_back(s.measurements[e]);
-    parts.accepted.push_back(s.verdict(e) == Verdict::accepted);
+    parts.believed.push_back(s.verdict(e) == Verdict::accepted);
   }
   parts.num_nodes = s.num_nodes();
   parts.measurements = subset;
   parts.root_from_node = s.root_from_node;
   parts.part = forest_of(s.num_nodes(), s.measurements, spanning(s)).root;
-  std::vector<Promotion> promotions = confirmed_within_parts(parts, s.noise, s.options);
-  if (promotions.empty()) promotions = best_join(parts, s.noise, s.options);
-  for (Promotion& p : promotions) {
-    p.measurement = kept[p.measurement];
-    for (int& e : p.confirmed_by) e = kept[e];
+  const std::vector<ConfirmedLink> confirmed = confirmed_within_parts(parts, s.options);
+  for (const ConfirmedLink& c : confirmed) {
+    const Measurement& m = subset[c.measurement];
+    promote(s, kept[c.measurement], "agrees with the loop " + loop_text(s, nodes_of_path(subset, c.path, m.source)));
   }
-  for (const Promotion& p : promotions) accept_promoted(s, p);
-  return !promotions.empty();
+  return !confirmed.empty();
 }
 
 LinkError error_at(const Measurement& m, const std::vector<Transform>& root_from_node) {
@@ -330,12 +318,12 @@ std::optional<Transform> predicted_target_from_source(const Solution& solution, 
 
 Solution solve(const PoseGraph& graph, const SolveOptions& options) {
   Solver s = prepared(graph, options);
-  reject_by_loops(s);
+  let_links_judge_each_other(s);
   // Ends: every turn moves at least one link from ambiguous to accepted or from accepted to rejected, never back.
   do {
     while (!optimise_once(s)) {
     }
-  } while (promote(s));
+  } while (promote_confirmed(s));
   const SpanningForest forest = forest_of(s.num_nodes(), s.measurements, spanning(s));
   const std::map<int, int> anchors = anchors_of(s, forest);
   record_errors(s, forest);

@@ -262,6 +262,53 @@ TEST(Solve, AmbiguousTriangleOfThreeScansCloses) {
   EXPECT_EQ(solve(world.graph, {}).components.size(), 3U);
 }
 
+/// A link that the pair stage accepted is a bridge to the accepted ones alone, but the ambiguous ones know better.
+TEST(Solve, WrongBridgeIsRejectedByAmbiguousLinksThatAgree) {
+  World world(6);
+  for (int i = 0; i < 3; ++i)
+    for (int j = i + 1; j < 3; ++j) world.right(i, j), world.right(i + 3, j + 3);
+  world.wrong(2, 3, 0.96);
+  world.right(0, 3, 0.7, Verdict::ambiguous), world.right(1, 4, 0.5, Verdict::ambiguous);
+  world.wrong(0, 5, 0.6, Verdict::ambiguous), world.wrong(1, 5, 0.6, Verdict::ambiguous);
+  const Solution solution = solve(world.graph, {});
+  EXPECT_EQ(find_link(solution, 2, 3)->link.result.verdict, Verdict::rejected);
+  EXPECT_EQ(find_link(solution, 0, 3)->link.result.verdict, Verdict::accepted);
+  EXPECT_EQ(find_link(solution, 1, 4)->link.result.verdict, Verdict::accepted);
+  EXPECT_EQ(find_link(solution, 0, 5)->link.result.verdict, Verdict::ambiguous);
+  EXPECT_EQ(solution.components.size(), 1U);
+  EXPECT_LT(worst_error_m(world, solution), kVoxel);
+}
+
+/// Links between two parts may agree only by way of a scan that is itself held by ambiguous links.
+TEST(Solve, AgreementIsFoundThroughAThirdScan) {
+  World world(5);
+  world.right(0, 1), world.right(2, 3);
+  world.right(0, 4, 0.7, Verdict::ambiguous), world.right(2, 4, 0.7, Verdict::ambiguous);
+  world.right(1, 3, 0.7, Verdict::ambiguous);
+  const Solution solution = solve(world.graph, {});
+  EXPECT_EQ(solution.components.size(), 1U);
+  EXPECT_LT(worst_error_m(world, solution), kVoxel);
+}
+
+TEST(Solve, ChainOfAmbiguousLinksIsNotBelieved) {
+  World world(4);
+  for (int i = 0; i + 1 < 4; ++i) world.right(i, i + 1, 0.9, Verdict::ambiguous);
+  EXPECT_EQ(solve(world.graph, {}).components.size(), 4U);
+}
+
+TEST(Solve, HundredScansWithAsManyWrongLinksAreSolvedQuickly) {
+  World world(100, 13);
+  for (int i = 0; i < 100; ++i) {
+    for (const int step : {1, 2, 11})
+      world.right(i, (i + step) % 100, 0.9, step == 2 ? Verdict::ambiguous : Verdict::accepted);
+    world.wrong(i, (i + 37) % 100, 0.96);
+    world.wrong(i, (i + 50 + i % 7) % 100, 0.6, Verdict::ambiguous);
+  }
+  const Solution solution = solve(world.graph, {});
+  EXPECT_EQ(accepted(solution).size(), 300U);
+  EXPECT_LT(worst_error_m(world, solution), kVoxel);
+}
+
 TEST(Solve, OrderOfScansAndLinksDoesNotShow) {
   World world(10, 3);
   for (int i = 0; i < 10; ++i) world.right(i, (i + 1) % 10), world.right(i, (i + 3) % 10, 0.5, Verdict::ambiguous);
@@ -329,8 +376,8 @@ TEST(Solve, UncertaintyGrowsAlongAChain) {
   const Solution solution = solve(world.graph, {});
   ASSERT_EQ(solution.components[0].anchor, 1);
   EXPECT_FALSE(solution.find(1)->sigma_m);
-  // One link: the information's 1 cm and the noise floor of a quarter voxel.
-  EXPECT_NEAR(*solution.find(0)->sigma_m, std::hypot(0.01, 0.25 * kVoxel), 1e-3);
+  // One link: the information's 1 cm and the noise floor of half a voxel.
+  EXPECT_NEAR(*solution.find(0)->sigma_m, std::hypot(0.01, 0.5 * kVoxel), 1e-3);
   EXPECT_GT(*solution.find(3)->sigma_m, *solution.find(2)->sigma_m);
 }
 

@@ -24,6 +24,7 @@ constexpr double kCoplanarTolerances = 0.5;  // gap allowed between the diagonal
 // corners of one base lie near each other and leave the overlap together.
 constexpr double kBaseHit = 0.7;
 constexpr double kCorners = 3;
+constexpr int kSpareTransforms = 8;         // kept until refinement has merged some and moved others beyond the prior
 constexpr std::size_t kPairsDrawn = 2000;   // a diagonal as common as one pair in a hundred is met twenty times
 constexpr std::size_t kCoverSamples = 500;  // the cover of a thinned target is known to 2 %
 constexpr double kMostTolerances = 5e5;     // diameter in tolerances that the hash grids can number
@@ -105,8 +106,7 @@ double share(std::int64_t common, const ScoreSample& sample) {
 
 BestTransforms no_transforms(const TrialSetting& s) {
   const double least = std::ceil(s.options.min_score * static_cast<double>(s.sample.points.size()));
-  return {static_cast<std::size_t>(s.options.max_transforms), s.distinct_m, 0.5 * s.source.diameter_m,
-          static_cast<std::int64_t>(least) - 1};
+  return {s.num_kept, s.distinct_m, 0.5 * s.source.diameter_m, static_cast<std::int64_t>(least) - 1};
 }
 
 // Batches of trials until the confidence is reached, the score is good enough or the cap is met.
@@ -205,15 +205,18 @@ CongruentResult register_congruent(const OrientedCloud& source_cloud, const Orie
                              .tolerance_m = tolerance_m,
                              .wish = {.width_m = options.base_width * overlap * source.diameter_m,
                                       .coplanarity_m = kCoplanarTolerances * tolerance_m},
-                             .distinct_m = kDistinctTolerances * tolerance_m};
+                             .distinct_m = kDistinctTolerances * tolerance_m,
+                             .num_kept = static_cast<std::size_t>(options.max_transforms + kSpareTransforms)};
 
   const double cover_of_target = cover(target, thin, tolerance_m, facing_rad, Rng(seed_of(seed, "cover")));
   const BestTransforms rough = run_trials(setting, overlap, cover_of_target, seed, result.counts);
   const BestTransforms fine = refined(setting, rough, target, result.counts);
-  for (const CountedTransform& t : fine.kept())
+  for (const CountedTransform& t : fine.kept()) {
+    if (std::ssize(result.transforms) == options.max_transforms) break;
     result.transforms.push_back(
         {Eigen::Translation3d(target.centre) * t.target_from_source * Eigen::Translation3d(-source.centre),
          share(t.common, sample), t.trial, static_cast<int>(t.voters.size())});
+  }
   if (result.transforms.empty()) result.reason = why_empty(result, options);
   return result;
 }

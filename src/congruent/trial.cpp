@@ -245,9 +245,7 @@ bool within(const CongruentPrior& prior, const Transform& target_from_source, do
 }
 
 TrialOutcome run_trial(const TrialSetting& s, int trial, Rng rng, std::int64_t to_beat) {
-  TrialOutcome outcome{BestTransforms(static_cast<std::size_t>(s.options.max_transforms), s.distinct_m,
-                                      0.5 * s.source.diameter_m, to_beat),
-                       {}};
+  TrialOutcome outcome{BestTransforms(s.num_kept, s.distinct_m, 0.5 * s.source.diameter_m, to_beat), {}};
   const auto base = draw_base(s, rng);
   if (!base) {
     ++outcome.counts.trials_without_base;

@@ -22,7 +22,8 @@ struct TrialSetting {
   const CongruentOptions& options;
   double tolerance_m = 0;
   BaseWish wish;
-  double distinct_m = 0;  ///< transforms nearer than this are the same
+  double distinct_m = 0;     ///< transforms nearer than this are the same
+  std::size_t num_kept = 1;  ///< transforms that a trial may hand on
 };
 
 struct TrialOutcome {

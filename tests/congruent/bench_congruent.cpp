@@ -19,7 +19,7 @@ namespace {
 using namespace isthmus;
 using namespace isthmus::congruent;
 
-constexpr int kRuns = 8;
+constexpr int kRuns = 4;
 
 struct Scene {
   test::Cloud source, target;
@@ -94,7 +94,7 @@ Estimates run_pcl(Baseline& baseline, const Scene& scene) {
   baseline.setDelta(static_cast<float>(scene.tolerance_m), false);
   baseline.setNumberOfThreads(1);
   baseline.setNumberOfSamples(500);
-  baseline.setMaxComputationTime(20);
+  baseline.setMaxComputationTime(10);
   pcl::PointCloud<pcl::PointXYZ> aligned;
   baseline.align(aligned);
   Transform estimate = Transform::Identity();

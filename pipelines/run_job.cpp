@@ -93,6 +93,9 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
   run.peak_memory_bytes = peak_memory_bytes();
   run.exit_code = result.end == JobEnd::connected ? 0 : 3;
   result.record.run = run;
+  std::error_code code;
+  fs::create_directories(job.output, code);
+  if (code) return fail("cannot create the folder: " + code.message(), job.output.string());
   const Result<void> resolved = write_file_atomically(job.output / "resolved.yaml", resolved_job(job, job.output));
   if (!resolved) return tl::unexpected(resolved.error());
   if (const Result<void> written = report::write_outputs(result.record, job.output); !written) {

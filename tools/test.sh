@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Installs, builds with warnings as errors and runs the tests. Labels keep it short: 'slow' and 'shared' (real scans that
-# do not come with the repo) run in tools/full_check.sh. Arguments go to ctest.
+# Installs, builds with warnings as errors and runs the tests but those labelled 'slow' and 'bench', which are left to
+# tools/full_check.sh. Tests labelled 'shared' need real scans that do not come with the repo and are skipped without them.
+# Arguments go to ctest.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

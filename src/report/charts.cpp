@@ -27,8 +27,9 @@ std::vector<int> matrix_order(const SurveyRecord& record) {
   return ids;
 }
 
-std::string verdict_class(const PairResult& r) {
-  if (r.verdict == Verdict::accepted) return fmt::format("accepted c{}", probability_class(r.probability));
+std::string verdict_class(const SolvedLink& link) {
+  const PairResult& r = link.link.result;
+  if (r.verdict == Verdict::accepted) return fmt::format("accepted c{}", probability_class(link.probability));
   return word(r.verdict);
 }
 
@@ -128,7 +129,7 @@ std::string pair_matrix(const SurveyRecord& record) {
     if (a == place.end() || b == place.end()) continue;
     const auto [low, high] = std::minmax(a->second, b->second);
     const std::string title = link_title(record, l);
-    square(high, low, verdict_class(l.link.result), 1.0, title);
+    square(high, low, verdict_class(l), 1.0, title);
     if (l.link.result.target_from_source && l.link.result.verdict >= Verdict::ambiguous)
       square(low, high, "overlap", std::clamp(0.08 + 1.2 * l.link.result.overlap, 0.0, 1.0), title);
   }

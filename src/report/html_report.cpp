@@ -131,7 +131,7 @@ std::string maps(const SurveyRecord& record) {
           fmt::format("<div class=\"card\"><h3>Part {}: {} scans, in a frame of its own</h3>{}</div>", k, size, svg);
   }
   if (out.empty()) return {};
-  if (!small.empty()) out += "<div class=\"two\">" + small + "</div>";
+  if (!small.empty()) out += "<div class=\"parts\">" + small + "</div>";
   return "<h2>Plan</h2>" + out;
 }
 

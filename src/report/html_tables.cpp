@@ -39,6 +39,7 @@ std::string link_row(const SurveyRecord& record, const SolvedLink& l) {
   row += fmt::format("<td data-v=\"{}\"><b class=\"pill {}\">{}</b></td>", 3 - static_cast<int>(r.verdict),
                      word(r.verdict), word(r.verdict));
   row += number_cell(r.probability, fmt::format("{:.3f}", r.probability));
+  row += number_cell(l.probability, fmt::format("{:.3f}", l.probability));
   row += r.target_from_source ? number_cell(r.overlap, percent(r.overlap)) + number_cell(r.rms_m, metres(r.rms_m))
                               : empty_cell() + empty_cell();
   row += l.after ? number_cell(l.after->translation_m, metres(l.after->translation_m)) +
@@ -79,7 +80,8 @@ std::string link_table(const SurveyRecord& record) {
   out += header({{"source", "Later scan of the pair"},
                  {"target", "Earlier scan of the pair"},
                  {"verdict", "After the loops have spoken"},
-                 {"probability", "That the link is right, from the pair alone"},
+                 {"alone", "Probability that the link is right, from the pair alone"},
+                 {"with loops", "The same, given the loops that confirm it"},
                  {"overlap", "Share of points with a facing point of the other scan; the smaller direction"},
                  {"residual", "Point to plane over the overlap, root mean square"},
                  {"off by", "Distance of this link from the solved poses at the source&#39;s centre"},

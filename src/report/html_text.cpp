@@ -118,7 +118,7 @@ std::string link_title(const SurveyRecord& record, const SolvedLink& link) {
     text += fmt::format("\noff the solved poses by {}, {}", metres(link.after->translation_m),
                         degrees(link.after->rotation_rad));
   if (r.verdict == Verdict::accepted)
-    text += link.in_loop ? "\nconfirmed by a loop" : "\nno loop confirms it";
+    text += link.in_loop ? fmt::format("\nconfirmed by a loop: {:.3f}", link.probability) : "\nno loop confirms it";
   else
     text += "\n" + r.reason;
   return text;

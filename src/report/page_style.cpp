@@ -32,6 +32,7 @@ p.lead { font-size: 17px; max-width: 76ch; margin: 6px 0; } .quiet, figcaption {
 .tile b { display: block; white-space: nowrap; font-size: 22px; font-weight: 650; letter-spacing: -.01em; } .tile span { color: var(--quiet); font-size: 13px; }
 .card { background: var(--card); border: 1px solid var(--rule); border-radius: 10px; padding: 16px; margin: 12px 0; }
 .two { display: grid; grid-template-columns: repeat(auto-fit, minmax(420px, 1fr)); gap: 12px; } .two .card { margin: 0; }
+.parts { display: grid; grid-template-columns: repeat(auto-fill, minmax(420px, 1fr)); gap: 12px; } .parts .card { margin: 0; }
 svg { display: block; width: 100%; height: auto; } svg text { font: 11px system-ui, "DejaVu Sans", sans-serif; fill: var(--quiet); }
 .plan { background: var(--sea); border-radius: 8px; }
 .footprints circle { fill: var(--land); fill-opacity: .10; }

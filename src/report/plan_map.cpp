@@ -22,6 +22,10 @@ constexpr Sheet kSmall{520, 340, 44};
 // Stations whose least spread is along z within this angle count as a level survey.
 constexpr double kLevelCosine = 0.94;  // 20 degrees
 constexpr std::size_t kManyScans = 40;
+// Beyond this an ambiguous link contradicts the poses.
+constexpr double kOffVoxels = 4.0;
+// Discs wider than this share of the sheet would hide it: objects turned before one scanner all overlap.
+constexpr double kWidestFootprint = 0.45;
 
 struct Spot {
   Eigen::Vector2d at;  // px
@@ -88,12 +92,21 @@ Layout laid_out(const SurveyRecord& record, const Component& component, const Sh
 }
 
 void draw_footprints(std::string& svg, const Layout& layout, const Sheet& sheet) {
+  double widest = 0;
+  for (const auto& [id, spot] : layout.spots) widest = std::max(widest, spot.radius_px);
+  if (widest > kWidestFootprint * sheet.height && layout.spots.size() > 2) return;
   svg += "<g class=\"footprints\">";
-  const double largest = 0.6 * std::max(sheet.width, sheet.height);
   for (const auto& [id, spot] : layout.spots)
     fmt::format_to(std::back_inserter(svg), "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"/>", spot.at.x(),
-                   spot.at.y(), std::min(largest, spot.radius_px));
+                   spot.at.y(), std::min(kWidestFootprint * sheet.height, spot.radius_px));
   svg += "</g>";
+}
+
+/// An ambiguous link that the poses contradict says nothing about the survey: it is drawn with the rejected ones.
+const char* map_class(const SolvedLink& l, double voxel_m) {
+  const Verdict verdict = l.link.result.verdict;
+  const bool off = l.after && l.after->translation_m > kOffVoxels * voxel_m;
+  return verdict == Verdict::ambiguous && off ? "rejected" : word(verdict);
 }
 
 void draw_links(std::string& svg, const SurveyRecord& record, const Layout& layout, bool large) {
@@ -105,13 +118,13 @@ void draw_links(std::string& svg, const SurveyRecord& record, const Layout& layo
       if (r.verdict != verdict || a == layout.spots.end() || b == layout.spots.end()) continue;
       // Width by overlap: a wide isthmus is a strong one.
       const double width = (large ? 1.6 : 1.2) + 5.0 * std::clamp(r.overlap, 0.0, 1.0);
-      fmt::format_to(std::back_inserter(svg),
-                     "<line class=\"link {} p{} r{}{}\" data-link=\"{}-{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" "
-                     "y2=\"{:.1f}\" stroke-width=\"{:.1f}\"><title>{}</title></line>",
-                     word(r.verdict), probability_class(r.probability), residual_class(r.rms_m, record.voxel_m),
-                     l.in_loop || verdict != Verdict::accepted ? "" : " bridge", l.link.source, l.link.target,
-                     a->second.at.x(), a->second.at.y(), b->second.at.x(), b->second.at.y(), width,
-                     escaped(link_title(record, l)));
+      fmt::format_to(
+          std::back_inserter(svg),
+          "<line class=\"link {} p{} r{}{}\" data-link=\"{}-{}\" x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" "
+          "y2=\"{:.1f}\" stroke-width=\"{:.1f}\"><title>{}</title></line>",
+          map_class(l, record.voxel_m), probability_class(l.probability), residual_class(r.rms_m, record.voxel_m),
+          l.in_loop || verdict != Verdict::accepted ? "" : " bridge", l.link.source, l.link.target, a->second.at.x(),
+          a->second.at.y(), b->second.at.x(), b->second.at.y(), width, escaped(link_title(record, l)));
     }
   };
   draw(Verdict::rejected);
@@ -244,7 +257,8 @@ std::string plan_map_legend() {
          "<svg class=\"key round\" viewBox=\"0 0 24 24\"><g class=\"station anchor\"><circle class=\"ring\" cx=\"12\" "
          "cy=\"12\" "
          "r=\"10\"/><circle class=\"dot\" cx=\"12\" cy=\"12\" r=\"6\"/></g></svg>anchor; width: overlap</span>"
-         "<label class=\"switch\"><input type=\"checkbox\" id=\"show-rejected\"> show rejected links</label></div>";
+         "<label class=\"switch\"><input type=\"checkbox\" id=\"show-rejected\"> show links that the poses "
+         "contradict</label></div>";
 }
 
 }  // namespace isthmus::report

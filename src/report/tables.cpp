@@ -108,6 +108,7 @@ std::string links_csv(const SurveyRecord& record) {
                            "verdict_of_pair",
                            "guided",
                            "in_loop",
+                           "probability_with_loops",
                            "error_deg",
                            "error_m",
                            "overlap_of_source",
@@ -138,7 +139,7 @@ std::string links_csv(const SurveyRecord& record) {
     else
       csv.skip().skip();
     csv.add(source != nullptr ? source->name : "").add(target != nullptr ? target->name : "");
-    csv.add(word(l.measured)).add(l.link.guided ? 1 : 0).add(l.in_loop ? 1 : 0);
+    csv.add(word(l.measured)).add(l.link.guided ? 1 : 0).add(l.in_loop ? 1 : 0).add(l.probability);
     if (l.after)
       csv.add(l.after->rotation_rad * kDegPerRad).add(l.after->translation_m);
     else

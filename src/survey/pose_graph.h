@@ -63,6 +63,9 @@ struct SolvedLink {
   std::optional<LinkError> before;  ///< against the spanning tree's poses; absent if the ends are not in one component
   std::optional<LinkError> after;   ///< against the final poses; absent likewise
   bool in_loop = false;             ///< accepted, and confirmed by at least one loop (false: a bridge, believed alone)
+  /// That the link is right, given the loops: the pair stage's probability, raised for accepted links that a loop
+  /// confirms.
+  double probability = 0;
 };
 
 struct PlacedScan {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numbers>
 #include <tuple>
@@ -87,7 +88,8 @@ Solver prepared(const PoseGraph& graph, const SolveOptions& options) {
   std::sort(s.scans.begin(), s.scans.end(), [](const GraphScan& a, const GraphScan& b) { return a.id < b.id; });
   std::map<int, int> node_of_id;
   for (int i = 0; i < s.num_nodes(); ++i) node_of_id.emplace(s.scans[i].id, i);
-  for (const Link& link : graph.links) s.links.push_back({link, link.result.verdict, {}, {}, false});
+  for (const Link& link : graph.links)
+    s.links.push_back({link, link.result.verdict, {}, {}, false, link.result.probability});
   std::stable_sort(s.links.begin(), s.links.end(), link_less);
   for (std::size_t k = 0; k < s.links.size(); ++k) {
     PairResult& r = s.links[k].link.result;
@@ -252,6 +254,9 @@ void mark_loops(Solver& s) {
     for (const int t : tree_path(forest, s.measurements[e].source, s.measurements[e].target))
       s.link_of(t).in_loop = true;
   }
+  for (const int e : voters)
+    if (s.link_of(e).in_loop)
+      s.link_of(e).probability = 1.0 / (1.0 + std::exp(-agreeing_vote(s.measurements[e], s.options)));
 }
 
 void record_errors(Solver& s, const SpanningForest& forest) {

@@ -49,6 +49,7 @@ std::size_t range_bin(double range) {
 // denser than the ranges just before it (a tunnel's or a dome's wall is not).
 std::optional<double> find_no_return_range(const std::vector<std::uint32_t>& histogram, std::uint64_t total) {
   constexpr std::size_t kHalf = 2, kContext = 100;
+  constexpr std::uint64_t kMinShell = 30;  // in a small scan one far point is 0.3 %
   std::uint64_t beyond = 0;
   for (std::size_t bin = kRangeBins; bin-- > kContext + kHalf;) {
     if (histogram[bin] == 0) continue;
@@ -58,7 +59,7 @@ std::optional<double> find_no_return_range(const std::vector<std::uint32_t>& his
     for (std::size_t b = bin - kContext; b < bin - 2 * kHalf; ++b) before += histogram[b];
     const double density_ratio = static_cast<double>(spike) / (2 * kHalf + 1) /
                                  std::max(static_cast<double>(before) / (kContext - 2 * kHalf), 1e-9);
-    if (static_cast<double>(spike) > 0.003 * static_cast<double>(total) && density_ratio > 20)
+    if (spike >= kMinShell && static_cast<double>(spike) > 0.003 * static_cast<double>(total) && density_ratio > 20)
       return kSmallestRange * std::exp((static_cast<double>(bin) - kHalf + 0.5) * kLogRangeStep);
     beyond += histogram[bin];
   }

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "report/html_text.h"
+#include "survey/candidates.h"
 
 namespace isthmus::report {
 namespace {
@@ -19,11 +20,16 @@ constexpr int kBins = 10;
 constexpr double kMatrixPx = 560;
 constexpr std::size_t kMaxLabelled = 40;
 
-/// Scans that were read, by component, then id.
+/// Scans that were read, by component, then in natural order of their names.
 std::vector<int> matrix_order(const SurveyRecord& record) {
   std::vector<int> ids;
-  for (const Component& component : record.solution.components)
+  for (const Component& component : record.solution.components) {
     ids.insert(ids.end(), component.scans.begin(), component.scans.end());
+    // Neighbours in the field often are neighbours in the naming, so that links gather along the diagonal.
+    std::stable_sort(ids.end() - static_cast<std::ptrdiff_t>(component.scans.size()), ids.end(), [&](int a, int b) {
+      return natural_less(find_scan(record, a)->name, find_scan(record, b)->name);
+    });
+  }
   return ids;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <numeric>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -18,9 +19,9 @@
 namespace isthmus {
 namespace {
 
-using Pair = std::pair<int, int>;  // positions among the scans in natural order of their names, smaller first
+using Pair = std::pair<int, int>;  // positions among the scans sorted by name, smaller first
 
-/// The scans in natural order of their names, and what every choice needs to know of their pairs.
+/// The scans sorted by name (byte by byte, as ids are), and what every choice needs to know of their pairs.
 struct Survey {
   std::vector<const CandidateInput*> scans;
   std::vector<double> scores;  // n x n, symmetric
@@ -97,9 +98,13 @@ void add_groups(const Survey& survey, std::map<Pair, const char*>& chosen, std::
 }
 
 void add_file_order(const Survey& survey, std::map<Pair, const char*>& chosen) {
+  std::vector<int> order(survey.scans.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return natural_less(survey.scans[a]->name, survey.scans[b]->name); });
   for (int i = 0; i < survey.size(); ++i)
     for (int k = 1; k <= survey.options.file_order_neighbours && i + k < survey.size(); ++k)
-      if (survey.allowed(i, i + k)) add(chosen, i, i + k, "file order");
+      if (survey.allowed(order[i], order[i + k])) add(chosen, order[i], order[i + k], "file order");
 }
 
 void add_most_alike(const Survey& survey, std::map<Pair, const char*>& chosen) {
@@ -175,7 +180,7 @@ CandidateGraph propose_candidates(std::span<const CandidateInput> scans, const C
   survey.options = options;
   for (const CandidateInput& scan : scans) survey.scans.push_back(&scan);
   std::sort(survey.scans.begin(), survey.scans.end(),
-            [](const CandidateInput* a, const CandidateInput* b) { return natural_less(a->name, b->name); });
+            [](const CandidateInput* a, const CandidateInput* b) { return a->name < b->name; });
   compute_scores(survey);
   CandidateGraph graph;
   std::map<Pair, const char*> chosen;

@@ -31,7 +31,7 @@ struct CandidateOptions {
 const config::OptionTable<CandidateOptions>& candidate_options_table();
 
 struct Candidate {
-  int source = 0;    ///< id; the scan whose name sorts later in natural order
+  int source = 0;    ///< id; the scan whose name sorts later, byte by byte
   int target = 0;    ///< id
   double score = 0;  ///< likeness in [0, 1], damped by distance where priors are known
   std::string why;   ///< "all pairs", "likeness", "connects", "group", "file order"

@@ -137,6 +137,16 @@ TEST(Candidates, GroupsAreTriedWhateverTheBudget) {
   EXPECT_NE(graph.warnings[0].find("nowhere*.ply"), std::string::npos);
 }
 
+/// As the ids of a survey are given: the later name, byte by byte, is the source.
+TEST(Candidates, LaterNameIsTheSource) {
+  std::vector<CandidateInput> inputs(2);
+  inputs[0].id = 5, inputs[0].name = "s2";
+  inputs[1].id = 6, inputs[1].name = "s10";
+  const CandidateGraph graph = propose_candidates(inputs, {});
+  ASSERT_EQ(graph.candidates.size(), 1U);
+  EXPECT_EQ(graph.candidates[0].source, 5);
+}
+
 TEST(Candidates, FileOrderIsNaturalOrder) {
   EXPECT_TRUE(natural_less("s2", "s10"));
   EXPECT_FALSE(natural_less("s10", "s2"));

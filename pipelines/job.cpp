@@ -95,6 +95,12 @@ Result<std::vector<Job>> read_jobs(const fs::path& file) {
   const auto add = [&](const YAML::Node& one) -> Result<void> {
     Result<Job> job = job_of(one, file);
     if (!job) return tl::unexpected(job.error());
+    for (const Job& earlier : jobs) {
+      if (earlier.output == job->output) {
+        return fail(fmt::format("two jobs write to {}", job->output.string()), config::place(file.string(), one.Mark()),
+                    "the other is " + earlier.origin);
+      }
+    }
     jobs.push_back(std::move(*job));
     return {};
   };

@@ -27,7 +27,7 @@ StoredPair register_planned_pair(const ScanPlan& source, const ScanPlan& target,
   PairResult result = register_pair(**source_product, **target_product, settings.pair, priors);
   // Refinement in float leaves rotations good to 1e-7; at map coordinates (5e6 m) that would be half a metre.
   if (result.target_from_source) result.target_from_source = orthonormalised(*result.target_from_source);
-  if (const Result<void> saved = store.save(key, result); !saved) return {failed(saved.error()), false};
+  store.keep(key, result);
   return {std::move(result), false};
 }
 

@@ -58,8 +58,7 @@ Look look_at(const io::ScanRef& ref, const Settings& settings, const store::Stor
     return look;
   }
   look.scale = *scale;
-  // Not being able to keep it only costs time later; a full disk shows itself when products are written.
-  (void)store.save(key, StoredScale{scale->voxel_m, scale->spacing_m, scale->extent_m});
+  store.keep(key, StoredScale{scale->voxel_m, scale->spacing_m, scale->extent_m});
   return look;
 }
 

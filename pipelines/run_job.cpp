@@ -5,6 +5,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <ctime>
 #include <mutex>
@@ -47,6 +49,16 @@ JobEnd end_of(const report::SurveyRecord& record) {
   return JobEnd::connected;
 }
 
+/// Where no scans are looked for; the output stays when it is the input, too.
+std::vector<fs::path> folders_of_output(const Job& job) {
+  std::vector<fs::path> folders = {store_folder(job)};
+  std::error_code error;
+  const bool is_input =
+      std::ranges::any_of(job.inputs, [&](const fs::path& input) { return fs::equivalent(input, job.output, error); });
+  if (!is_input) folders.push_back(job.output);
+  return folders;
+}
+
 std::string text_of(const std::vector<fs::path>& paths) {
   std::vector<std::string> words;
   for (const fs::path& path : paths) words.push_back(path.string());
@@ -63,7 +75,7 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
   run.started = utc_now();
   run.host = host_name();
 
-  Result<io::ScanListing> listing = io::list_scans(job.inputs, {job.output, store_folder(job)});
+  Result<io::ScanListing> listing = io::list_scans(job.inputs, folders_of_output(job));
   if (!listing) return tl::unexpected(listing.error());
   for (const std::string& note : listing->notes) events.info(note);
   if (listing->scans.empty()) {

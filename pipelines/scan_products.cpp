@@ -39,8 +39,7 @@ Result<T> load_or_make(const store::Store& store, const store::Key& key, std::ve
   }
   Result<T> made = make();
   times.push_back({key.stage, watch.seconds(), false});
-  if (!made) return made;
-  if (Result<void> saved = store.save(key, *made); !saved) return tl::unexpected(saved.error());
+  if (made) store.keep(key, *made);
   return made;
 }
 

@@ -145,9 +145,7 @@ class SurveyGraph {
     }
     work.product->regions = std::move(*regions);
     work.outcome->summary = summarise(*work.product);
-    if (const Result<void> saved = store_.save(work.plan.summary, *work.outcome->summary); !saved) {
-      work.outcome->error = saved.error();
-    }
+    store_.keep(work.plan.summary, *work.outcome->summary);
   }
 
   /// Serial: the end of a scan's walk and the barrier behind it.

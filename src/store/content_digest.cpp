@@ -65,8 +65,7 @@ Result<std::string> content_digest(const std::filesystem::path& path, const Stor
   Result<std::string> digest = digest_of_bytes(fd, path.string());
   ::close(fd);
   const bool settled = info.st_mtim.tv_sec + kSettledSeconds < std::time(nullptr);
-  // Not being able to remember only costs time later: the digest itself is right.
-  if (digest && settled) (void)store.save(key, Remembered{identity, *digest});
+  if (digest && settled) store.keep(key, Remembered{identity, *digest});
   return digest;
 }
 

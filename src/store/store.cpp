@@ -60,13 +60,13 @@ Key make_key(std::string_view stage, std::string_view version, std::span<const s
   return {std::string(stage), digest.hex()};
 }
 
-Result<Store> Store::open(const std::filesystem::path& folder, OnDamage on_damage) {
+Result<Store> Store::open(const std::filesystem::path& folder, OnTrouble on_trouble) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
     return fail("cannot create the store's folder: " + error.message(), folder.string(), "choose another with --store");
   }
-  return Store(folder, std::move(on_damage));
+  return Store(folder, std::move(on_trouble));
 }
 
 std::filesystem::path Store::path_of(const Key& key) const {
@@ -102,7 +102,15 @@ Result<void> Store::save_payload(const Key& key, const std::string& payload) con
 }
 
 void Store::report_damage(const Key& key, const std::string& reason) const {
-  if (on_damage_) on_damage_({"damaged artifact: " + reason, path_of(key).string(), "it is made anew"});
+  if (on_trouble_) on_trouble_({"damaged artifact: " + reason, path_of(key).string(), "it is made anew"});
+}
+
+void Store::report_unkept(const Error& error) const {
+  if (!on_trouble_) return;
+  std::call_once(*unkept_reported_, [&] {
+    on_trouble_({"what was computed cannot be kept: " + error.what, error.where,
+                 "the run goes on, but a later one begins anew; free some space or choose another --store"});
+  });
 }
 
 }  // namespace isthmus::store

@@ -13,6 +13,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -34,13 +36,14 @@ Key make_key(std::string_view stage, std::string_view version, std::span<const s
 
 class Store {
  public:
-  /// Told about each damaged artifact that was found (and will be made anew). Called from any thread.
-  using OnDamage = std::function<void(const Error&)>;
+  /// Told about each damaged artifact that was found (and will be made anew), and about the first one that could not be
+  /// kept. Called from any thread.
+  using OnTrouble = std::function<void(const Error&)>;
 
   /// Creates the folder if need be; fails when it cannot be written.
-  static Result<Store> open(const std::filesystem::path& folder, OnDamage on_damage);
+  static Result<Store> open(const std::filesystem::path& folder, OnTrouble on_trouble);
 
-  /// The artifact, or nothing when there is none or it is damaged (which is reported once through OnDamage).
+  /// The artifact, or nothing when there is none or it is damaged (which is reported through OnTrouble).
   template <class T>
   std::optional<T> load(const Key& key) const {
     const std::optional<std::string> payload = load_payload(key);
@@ -58,18 +61,26 @@ class Store {
     return save_payload(key, to_bytes(value));
   }
 
+  /// save(), where a failure (a full disk) only costs time later: it is reported once through OnTrouble.
+  template <class T>
+  void keep(const Key& key, const T& value) const {
+    if (const Result<void> saved = save(key, value); !saved) report_unkept(saved.error());
+  }
+
   [[nodiscard]] std::filesystem::path path_of(const Key& key) const;
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
  private:
-  Store(std::filesystem::path folder, OnDamage on_damage)
-      : folder_(std::move(folder)), on_damage_(std::move(on_damage)) {}
+  Store(std::filesystem::path folder, OnTrouble on_trouble)
+      : folder_(std::move(folder)), on_trouble_(std::move(on_trouble)) {}
   [[nodiscard]] std::optional<std::string> load_payload(const Key& key) const;
   [[nodiscard]] Result<void> save_payload(const Key& key, const std::string& payload) const;
   void report_damage(const Key& key, const std::string& reason) const;
+  void report_unkept(const Error& error) const;
 
   std::filesystem::path folder_;
-  OnDamage on_damage_;
+  OnTrouble on_trouble_;
+  std::shared_ptr<std::once_flag> unkept_reported_ = std::make_shared<std::once_flag>();
 };
 
 }  // namespace isthmus::store

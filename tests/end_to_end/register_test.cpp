@@ -58,6 +58,25 @@ TEST_F(Register, takes_one_of_two_formats_of_a_scan_and_names_the_other) {
   EXPECT_EQ(std::ranges::count(table, '\n'), 3) << table;
 }
 
+TEST_F(Register, goes_on_when_products_cannot_be_kept) {
+  make_survey(2);
+  fs::create_directories(out_ / "store");
+  for (const char* stage : {"sampled", "pair"}) std::ofstream(out_ / "store" / stage) << "in the way of a folder";
+  const Said said = register_scans();
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_NE(said.err.find("what was computed cannot be kept"), std::string::npos) << said.err;
+}
+
+TEST_F(Register, the_output_may_be_the_folder_of_the_scans) {
+  make_survey(2);
+  const std::vector<std::string> arguments = {"register", scans_.string(), "-o", scans_.string()};
+  ASSERT_EQ(run(arguments).exit_code, 0);
+  const std::string table = text_of_file(scans_ / "scans.csv");
+  const Said again = run(arguments);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(text_of_file(scans_ / "scans.csv"), table);
+}
+
 TEST_F(Register, works_within_little_memory) {
   make_survey(3);
   EXPECT_EQ(register_scans({"--memory", "0.1"}).exit_code, 0);

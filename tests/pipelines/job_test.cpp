@@ -57,6 +57,8 @@ TEST_F(JobFile, errors_name_file_line_and_column) {
   EXPECT_EQ(error_of("input: a\noutput: b\nprofile: quik\n"),
             "job.yaml:3:10: there is no such configuration file or profile (did you mean quick?)");
   EXPECT_EQ(error_of("input: []\noutput: b\n"), "job.yaml:1:8: 'input' is empty");
+  EXPECT_TRUE(
+      error_of("- {input: a, output: b}\n- {input: c, output: ./b}\n").starts_with("job.yaml:2:3: two jobs write to "));
   EXPECT_EQ(error_of("[]"), "job.yaml: the list of jobs is empty");
   EXPECT_FALSE(read_jobs(folder_ / "missing.yaml"));
 }

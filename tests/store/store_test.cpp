@@ -94,6 +94,15 @@ TEST_F(StoreOfSamples, many_writers_and_readers_never_see_half_an_artifact) {
   EXPECT_TRUE(damages_.empty());
 }
 
+TEST_F(StoreOfSamples, what_cannot_be_kept_is_told_once) {
+  ASSERT_TRUE(write_file_atomically(store_.folder() / "sample", "in the way of a folder"));
+  EXPECT_FALSE(store_.save(key_of("x"), full_sample()));
+  store_.keep(key_of("x"), full_sample());
+  store_.keep(key_of("y"), full_sample());
+  ASSERT_EQ(damages_.size(), 1U);
+  EXPECT_NE(damages_[0].find("cannot be kept"), std::string::npos) << damages_[0];
+}
+
 TEST(StoreFolder, that_cannot_be_made_is_an_error) { EXPECT_FALSE(Store::open("/proc/no/such/folder", {})); }
 
 }  // namespace

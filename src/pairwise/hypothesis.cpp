@@ -90,22 +90,37 @@ double free_space_factor(const Hypothesis& h) {
 void polish(const ScanModel& source, const ScanModel& target, std::size_t max_points, int steps, Hypothesis& hypothesis) {
   const auto from = even_sample(source, max_points), to = even_sample(target, max_points);
   constexpr std::size_t kMinMatches = 12;
-  Transform t = hypothesis.target_from_source;
+  // A few matches on a line could throw a hypothesis anywhere: no step moves the scan by more than a few voxels, and a step
+  // that loses the surface is taken back.
+  constexpr double kMaxMoveVoxels = 2, kMaxTurnVoxels = 4;
+  constexpr double kMinKept = 0.6;
+  Transform t = hypothesis.target_from_source, before = t;
+  std::size_t matches_before = 0;
   const float voxel = source.voxel_m;
+  const StepLimit limit{kMaxMoveVoxels * static_cast<double>(voxel),
+                        kMaxTurnVoxels * static_cast<double>(voxel / std::max(source.extent_m, voxel))};
   for (int step = 0; step < steps; ++step) {
     const float gate = voxel * (step * 2 < steps ? 1.0f : 0.5f);
     const Eigen::Vector3d middle = t * source.centroid.cast<double>();
     NormalEquations forward, backward;
     add_point_to_plane(source, target, t, from, false, gate, middle, forward);
     add_point_to_plane(target, source, t.inverse(), to, false, gate, source.centroid.cast<double>(), backward);
-    if (forward.matches + backward.matches < kMinMatches) break;
+    const std::size_t matches = forward.matches + backward.matches;
+    if (static_cast<double>(matches) < kMinKept * static_cast<double>(matches_before)) {
+      t = before;
+      break;
+    }
+    if (matches < kMinMatches) break;
+    // The gate halves half-way and drops matches by itself: compare only steps with the same gate.
+    matches_before = (step + 1) * 2 >= steps && step * 2 < steps ? 0 : matches;
+    before = t;
     // The backward step moves the target in the source frame; seen from the target it is the inverse motion: x -> -R x.
     Matrix6d to_target = Matrix6d::Zero();
     to_target.topLeftCorner<3, 3>() = -t.linear();
     to_target.bottomRightCorner<3, 3>() = -t.linear();
     forward.a += to_target * backward.a * to_target.transpose();
     forward.b += to_target * backward.b;
-    t = solved_step(forward, middle, voxel) * t;
+    t = solved_step(forward, middle, voxel, limit) * t;
     hypothesis.rms_m = std::sqrt((forward.sq_residual_sum + backward.sq_residual_sum) /
                                  std::max(forward.weight + backward.weight, 1e-12));
   }

@@ -1,6 +1,7 @@
 #include "regions/align.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 
 namespace isthmus {
 
@@ -36,7 +37,8 @@ void add_point_to_plane(const ScanModel& source, const ScanModel& target, const 
   equations.b += b.cast<double>();
 }
 
-Transform solved_step(const NormalEquations& equations, const Eigen::Vector3d& centre, double voxel_m) {
+Transform solved_step(const NormalEquations& equations, const Eigen::Vector3d& centre, double voxel_m,
+                      const StepLimit& limit) {
   constexpr double kDamping = 1e-3;  // of the average stiffness: unobserved directions stay
   Matrix6d a = equations.a;
   const double translation = a.topLeftCorner<3, 3>().trace() / 3, rotation = a.bottomRightCorner<3, 3>().trace() / 3;
@@ -44,9 +46,11 @@ Transform solved_step(const NormalEquations& equations, const Eigen::Vector3d& c
     a(k, k) += kDamping * translation + 1e-12;
     a(k + 3, k + 3) += kDamping * rotation + 1e-12 * voxel_m * voxel_m;
   }
-  const Vector6d x = a.ldlt().solve(equations.b);
+  Vector6d x = a.ldlt().solve(equations.b);
   Transform step = Transform::Identity();
   if (!x.allFinite()) return step;
+  const double excess = std::max(x.head<3>().norm() / limit.translation_m, x.tail<3>().norm() / limit.rotation_rad);
+  if (excess > 1) x /= excess;
   const Eigen::Matrix3d turn = rotation_from_vector(x.tail<3>());
   step.linear() = turn;
   step.translation() = centre + x.head<3>() - turn * centre;

@@ -1,6 +1,7 @@
 // Point-to-plane alignment over surface lookups: the small step inside growth and refinement.
 #pragma once
 
+#include <limits>
 #include <span>
 
 #include "geometry/transform.h"
@@ -24,7 +25,14 @@ void add_point_to_plane(const ScanModel& source, const ScanModel& target, const 
                         std::span<const std::uint32_t> sample, bool coarse, float gate_m, const Eigen::Vector3d& centre,
                         NormalEquations& equations);
 
+/// How far one step may go; a longer one is shortened as a whole.
+struct StepLimit {
+  double translation_m = std::numeric_limits<double>::infinity();
+  double rotation_rad = std::numeric_limits<double>::infinity();
+};
+
 /// The step's solution, damped so that directions nobody observes stay where they are.
-Transform solved_step(const NormalEquations& equations, const Eigen::Vector3d& centre, double voxel_m);
+Transform solved_step(const NormalEquations& equations, const Eigen::Vector3d& centre, double voxel_m,
+                      const StepLimit& limit = {});
 
 }  // namespace isthmus

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint32_t kCubeSize = 240;          // 0.4 degree cells; coarser where the scan is
 constexpr int kFineRatio = 2;                     // fine voxels a coarse voxel's edge: what is accumulated while streaming
-constexpr std::uint32_t kMinFineCount = 2;        // median raw points a fine voxel below which the fine level is left out
+constexpr std::uint32_t kMinFineCount = 3;        // median raw points a fine voxel below which the fine level is left out
 constexpr std::uint32_t kMinVoxelNeighbours = 4;  // fewer voxels around (itself included): a stray point
 constexpr double kLogRangeStep = 2e-4;            // relative width of a bin of the range histogram
 constexpr double kSmallestRange = 1e-5;

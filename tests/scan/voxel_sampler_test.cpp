@@ -159,7 +159,7 @@ TEST(VoxelSampler, MemoryGrowsWithVoxelsNotWithPoints) {
 
 TEST(VoxelSampler, TheFineLevelLiesInTheCoarseVoxels) {
   constexpr double kVoxel = 0.3;
-  const SampledScan scan = sampled(hall_scan(120000), kVoxel);
+  const SampledScan scan = sampled(hall_scan(400000), kVoxel);
   ASSERT_GT(scan.fine.points.size(), scan.points.size());
   ASSERT_EQ(scan.fine.normals.size(), scan.fine.points.size());
   ASSERT_EQ(scan.fine.variation.size(), scan.fine.points.size());

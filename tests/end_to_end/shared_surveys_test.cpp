@@ -47,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(Sets, SharedSurvey,
                                            Case{"tls_eth_facade", "full", 7, true},
                                            Case{"newer_college_01", "full", 5, true},
                                            Case{"fragments_redkitchen", "full", 3, true},
-                                           Case{"stanford_bunny", "object", 8, false}),
+                                           Case{"stanford_bunny", "object", 8, true}),
                          [](const auto& test) { return test.param.set + "_" + test.param.mode; });
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 // narrow enough to keep every matrix regular.
 constexpr double kCeilingVoxels = 100.0;
 constexpr double kCeilingRad = 0.5;
-constexpr double kTightFloors = 4.0;  // one voxel with the default noise: surfaces within it meet
+constexpr double kTightFloors = 4.0;  // two voxels with the default noise: surfaces within it meet
 // How far a rotation part may be from orthonormal before the measurement counts as broken rather than rounded.
 constexpr double kRotationTolerance = 1e-6;
 

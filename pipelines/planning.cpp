@@ -13,7 +13,7 @@ namespace isthmus::pipelines {
 namespace {
 
 constexpr std::size_t kProbePoints = 200000;  // 2.4 MB a thread; enough for a voxel good to a few per cent
-constexpr double kFixedBytes = 16e6;          // chunk, descriptors and regions, whatever the number of voxels
+constexpr double kFixedBytes = 64e6;          // chunk, probe, descriptors and regions, whatever the number of voxels
 constexpr double kBytesPerVoxel =
     600;  // accumulator, sampled point, normals' and descriptors' neighbourhoods (measured)
 constexpr double kLeastBytesPerPoint = 6;  // three 16-bit coordinates: no format stores a point in less

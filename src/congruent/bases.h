@@ -13,7 +13,7 @@ namespace isthmus::congruent {
 
 /// Points a, b, c, d; the diagonals ab and cd cross inside both, e1 = a + r1 (b - a) meeting e2 = c + r2 (d - c).
 /// The ratios, lengths and the angle survive any rigid motion; the ratios survive any affine one (Aiger, Mitra,
-/// Cohen-Or 2008, section 3).
+/// Cohen-Or 2008).
 struct Base {
   std::array<std::uint32_t, 4> points{};  ///< indices into the source
   double r1 = 0;

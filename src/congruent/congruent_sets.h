@@ -34,8 +34,8 @@ bool are_congruent(const SetQuery& query, std::span<const Eigen::Vector3f> point
                    std::span<const Eigen::Vector3f> normals, PointPair ab, PointPair cd);
 
 /// Every set that answers the query, in a deterministic order; nothing when there are more than `max_sets`. Crossings
-/// of `ab` go into a hash grid indexed by position and, within a cell, by direction (Mellado, Aiger, Mitra 2014,
-/// section 4.2), so that those of `cd` meet only crossings nearby at about the right angle.
+/// of `ab` go into a hash grid indexed by position and, within a cell, by direction (Mellado, Aiger, Mitra 2014), so
+/// that those of `cd` meet only crossings nearby at about the right angle.
 std::optional<std::vector<CongruentSet>> find_congruent_sets(
     const SetQuery& query, std::span<const Eigen::Vector3f> points, std::span<const Eigen::Vector3f> normals,
     std::span<const PointPair> ab, std::span<const PointPair> cd, std::size_t max_sets, SetCounts& counts);

@@ -16,7 +16,7 @@ struct RigidFit {
 };
 
 /// Least squares over corresponding points, a proper rotation always (Arun, Huang, Blostein 1987; the sign as in
-/// Umeyama 1991, equation 39). Nothing when the points do not fix a rotation: fewer than three, or all on a line,
+/// Umeyama 1991). Nothing when the points do not fix a rotation: fewer than three, or all on a line,
 /// within rounding. Exact for three or more points that are not collinear, coplanar ones included.
 std::optional<RigidFit> fit_rigid(std::span<const Eigen::Vector3d> source, std::span<const Eigen::Vector3d> target);
 

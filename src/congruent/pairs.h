@@ -42,7 +42,7 @@ struct PairCounts {
 bool answers(const PairQuery& query, std::span<const Eigen::Vector3f> points, std::span<const Eigen::Vector3f> normals,
              PointPair pair);
 
-/// Smart indexing (Mellado, Aiger, Mitra 2014, section 4.1): the spheres of radius d around all points descend together
+/// Smart indexing (Mellado, Aiger, Mitra 2014): the spheres of radius d around all points descend together
 /// through an octree, each cell handing down only the spheres whose shell [d - eps, d + eps] crosses it. We differ in
 /// using the tight boxes of the points in a cell, in keeping each unordered pair once on the way down, and in pruning
 /// by role. Holds copies of nothing outside itself; safe to query from several threads.

@@ -45,9 +45,13 @@ std::vector<Cloud> clouds() {
   Points lattice;  // every point on the border of a cell
   for (int x = -4; x <= 4; ++x)
     for (int y = -4; y <= 4; ++y)
-      for (int z = -4; z <= 4; ++z) lattice.emplace_back(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
-  return {{"random", random_points(600, -5, 5, 1)}, {"clustered", clustered_points(2)},
-          {"negative", random_points(400, -900, -890, 4)}, {"duplicates", duplicates}, {"lattice", lattice}};
+      for (int z = -4; z <= 4; ++z)
+        lattice.emplace_back(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
+  return {{"random", random_points(600, -5, 5, 1)},
+          {"clustered", clustered_points(2)},
+          {"negative", random_points(400, -900, -890, 4)},
+          {"duplicates", duplicates},
+          {"lattice", lattice}};
 }
 
 std::vector<std::uint32_t> brute_within(const Points& points, const Eigen::Vector3f& query, float radius_m) {
@@ -63,14 +67,16 @@ TEST(PointGrid, FindsTheSameNeighboursAsBruteForceForAnyCellSize) {
       const PointGrid grid(cloud.points, cell);
       for (const float radius : {0.25f, 1.0f, 2.5f})
         for (std::size_t q = 0; q < cloud.points.size(); q += 17) {
-          const Eigen::Vector3f query = cloud.points[q] + (q % 2 ? Eigen::Vector3f(0.1f, -0.2f, 0.05f) : Eigen::Vector3f::Zero());
+          const Eigen::Vector3f query =
+              cloud.points[q] + (q % 2 ? Eigen::Vector3f(0.1f, -0.2f, 0.05f) : Eigen::Vector3f::Zero());
           std::vector<std::uint32_t> found;
           grid.for_each_within(query, radius, [&](std::uint32_t i, float sq) {
             EXPECT_FLOAT_EQ(sq, (cloud.points[i] - query).squaredNorm());
             found.push_back(i);
           });
           std::sort(found.begin(), found.end());
-          ASSERT_EQ(found, brute_within(cloud.points, query, radius)) << cloud.name << ", cell " << cell << ", radius " << radius;
+          ASSERT_EQ(found, brute_within(cloud.points, query, radius))
+              << cloud.name << ", cell " << cell << ", radius " << radius;
         }
     }
 }

@@ -32,8 +32,9 @@ float nearest_distance(const Points& points, const Eigen::Vector3f& p) {
   return best;
 }
 
-// The answer is the point nearest to the centre of the query's cell. The query lies within half a diagonal of that centre, so
-// the answer is at most a whole diagonal farther than the nearest point, and a point well within reach is never missed.
+// The answer is the point nearest to the centre of the query's cell. The query lies within half a diagonal of that
+// centre, so the answer is at most a whole diagonal farther than the nearest point, and a point well within reach is
+// never missed.
 TEST(SurfaceLookup, AnswersWithinACellDiagonalOfBruteForce) {
   for (const int reach : {1, 2})
     for (const Eigen::Vector3f& offset : {Eigen::Vector3f(0, 0, 0), Eigen::Vector3f(-700, 300, -20)}) {
@@ -44,7 +45,8 @@ TEST(SurfaceLookup, AnswersWithinACellDiagonalOfBruteForce) {
       Rng rng(6);
       int hits = 0, misses = 0;
       for (int q = 0; q < 3000; ++q) {
-        const Eigen::Vector3f p = q % 2 ? Eigen::Vector3f(offset + in_cube(rng, -5, 5)) : Eigen::Vector3f(points[rng.below(points.size())] + in_cube(rng, -0.3, 0.3));
+        const Eigen::Vector3f p = q % 2 ? Eigen::Vector3f(offset + in_cube(rng, -5, 5))
+                                        : Eigen::Vector3f(points[rng.below(points.size())] + in_cube(rng, -0.3, 0.3));
         const float nearest = nearest_distance(points, p);
         const std::int32_t k = lookup.near(p);
         if (k < 0) {

@@ -37,7 +37,8 @@ TEST(Transform, RotationVectorByHandAndAgainstQuaternions) {
   Rng rng(2);
   for (const double angle : {1e-310, 1e-200, 1e-12, 1e-3, 1.0, kPi - 1e-9, kPi, 5.0}) {
     const Eigen::Vector3d axis = random_axis(rng);
-    const Eigen::Quaterniond q(std::cos(angle / 2), std::sin(angle / 2) * axis.x(), std::sin(angle / 2) * axis.y(), std::sin(angle / 2) * axis.z());
+    const Eigen::Quaterniond q(std::cos(angle / 2), std::sin(angle / 2) * axis.x(), std::sin(angle / 2) * axis.y(),
+                               std::sin(angle / 2) * axis.z());
     const Eigen::Matrix3d r = rotation_from_vector(angle * axis);
     EXPECT_NEAR((r - q.toRotationMatrix()).norm(), 0, 1e-14) << angle;
     EXPECT_NEAR((r.transpose() * r - Eigen::Matrix3d::Identity()).norm(), 0, 1e-14);

@@ -8,7 +8,8 @@
 
 namespace isthmus::testing {
 
-inline ScanProduct product_of(const Points& points, double voxel_m, const SamplingSetup& setup = {}, const FeatureOptions& features = {}) {
+inline ScanProduct product_of(const Points& points, double voxel_m, const SamplingSetup& setup = {},
+                              const FeatureOptions& features = {}) {
   ScanProduct product;
   product.sampled = sampled(points, voxel_m, setup);
   product.features = describe(product.sampled, features);
@@ -23,8 +24,8 @@ inline double largest_displacement_m(const ScanProduct& source, const Transform&
   return largest;
 }
 
-/// Two scans of one hall from stations 9 m apart that see 8 m far, so that they share a part only; the source is turned by
-/// `rotation_vector` about its station.
+/// Two scans of one hall from stations 6 m apart that see 11 m far, so that they share a part only; the source is
+/// turned by `rotation_vector` about its station.
 struct PartialOverlap {
   ScanProduct source, target;
   Transform target_from_source;
@@ -32,12 +33,15 @@ struct PartialOverlap {
 
 inline constexpr double kHallVoxel = 0.2;
 
-inline PartialOverlap partial_overlap(std::uint64_t hall_seed, const Eigen::Vector3d& rotation_vector, double max_range_m = 8) {
+inline PartialOverlap partial_overlap(std::uint64_t hall_seed, const Eigen::Vector3d& rotation_vector,
+                                      std::size_t num_rays = 60000) {
   const Scene hall = furnished_hall(hall_seed);
-  const Transform world_from_source = pose_of({-4.5, -1, 1.7}, rotation_vector), world_from_target = pose_of({4.5, 0.7, 1.8});
-  const Points source = scan_scene(hall, world_from_source, {60000, max_range_m, 0.004, 11});
-  const Points target = scan_scene(hall, world_from_target, {60000, max_range_m, 0.004, 12});
-  return {product_of(source, kHallVoxel), product_of(target, kHallVoxel), world_from_target.inverse() * world_from_source};
+  const Transform world_from_source = pose_of({-3, -1, 1.7}, rotation_vector),
+                  world_from_target = pose_of({3, 0.7, 1.8});
+  const Points source = scan_scene(hall, world_from_source, {num_rays, 11, 0.004, 11});
+  const Points target = scan_scene(hall, world_from_target, {num_rays, 11, 0.004, 12});
+  return {product_of(source, kHallVoxel), product_of(target, kHallVoxel),
+          world_from_target.inverse() * world_from_source};
 }
 
 }  // namespace isthmus::testing

@@ -1,4 +1,5 @@
-// Small scenes of rectangles and a scanner that casts rays at them: scans with a known station and pose, in milliseconds.
+// Small scenes of rectangles and a scanner that casts rays at them: scans with a known station and pose, in
+// milliseconds.
 #pragma once
 
 #include <cmath>
@@ -26,7 +27,8 @@ struct Scene {
     rectangles.push_back({corner, u, v});
   }
   /// The six sides of a box.
-  void add_box(const Eigen::Vector3d& centre, const Eigen::Vector3d& size, const Eigen::Matrix3d& rotation = Eigen::Matrix3d::Identity()) {
+  void add_box(const Eigen::Vector3d& centre, const Eigen::Vector3d& size,
+               const Eigen::Matrix3d& rotation = Eigen::Matrix3d::Identity()) {
     for (int a = 0; a < 3; ++a)
       for (const double side : {-0.5, 0.5}) {
         const int b = (a + 1) % 3, c = (a + 2) % 3;
@@ -38,7 +40,8 @@ struct Scene {
   }
 };
 
-inline Transform pose_of(const Eigen::Vector3d& position, const Eigen::Vector3d& rotation_vector = Eigen::Vector3d::Zero()) {
+inline Transform pose_of(const Eigen::Vector3d& position,
+                         const Eigen::Vector3d& rotation_vector = Eigen::Vector3d::Zero()) {
   Transform t = Transform::Identity();
   t.linear() = rotation_from_vector(rotation_vector);
   t.translation() = position;
@@ -52,20 +55,24 @@ inline Scene empty_room(const Eigen::Vector3d& size) {
   return scene;
 }
 
-/// A hall of 22 m x 13 m x 4.5 m on z = 0, with boxes of every size at any heading, some tilted, some on the walls. Another seed
-/// is another hall of another size: nothing but floors, ceilings and corners is alike.
+/// A hall of about 22 m x 13 m x 4.5 m on z = 0 with boxes of every size at any heading, some tilted, some on the
+/// walls, some under the ceiling. The middle, |y| < 1.1, is free for stations. Another seed is another hall of another
+/// size: nothing but floors, ceilings and corners is alike.
 inline Scene furnished_hall(std::uint64_t seed) {
   Rng rng(seed);
   Scene scene;
   const Eigen::Vector3d size(22 + rng.uniform(-3, 3), 13 + rng.uniform(-2, 2), 4.5 + rng.uniform(-0.7, 0.7));
   scene.add_box({0, 0, size.z() / 2}, size);
-  constexpr int kBoxes = 22;
+  constexpr int kBoxes = 44;
   for (int k = 0; k < kBoxes; ++k) {
     const Eigen::Vector3d box(rng.uniform(0.4, 2.2), rng.uniform(0.4, 1.6), rng.uniform(0.4, 2.8));
-    const bool on_wall = k % 4 == 3, tilted = k % 4 == 1;
-    Eigen::Vector3d centre(rng.uniform(-0.45, 0.45) * size.x(), rng.uniform(-0.45, 0.45) * size.y(), box.z() / 2);
-    if (on_wall) centre.y() = (k % 8 == 3 ? 0.5 : -0.5) * size.y(), centre.z() = rng.uniform(1, 3);
-    const Eigen::Vector3d turn(tilted ? rng.uniform(-0.5, 0.5) : 0, tilted ? rng.uniform(-0.5, 0.5) : 0, on_wall ? 0 : rng.uniform(0, 3));
+    const bool on_wall = k % 4 == 3, tilted = k % 4 == 1, hangs = k % 8 == 2;
+    const double side = rng.below(2) ? 1 : -1;
+    Eigen::Vector3d centre(rng.uniform(-0.48, 0.48) * size.x(), side * rng.uniform(2.5, 0.45 * size.y()), box.z() / 2);
+    if (on_wall) centre.y() = side * 0.5 * size.y(), centre.z() = rng.uniform(1, 3);
+    if (hangs) centre.z() = size.z() - 0.2 * box.z();
+    const Eigen::Vector3d turn(tilted ? rng.uniform(-0.5, 0.5) : 0, tilted ? rng.uniform(-0.5, 0.5) : 0,
+                               on_wall ? 0 : rng.uniform(0, 3));
     scene.add_box(centre, box, rotation_from_vector(turn));
   }
   return scene;
@@ -78,7 +85,8 @@ inline Scene mirrored(Scene scene) {
 }
 
 /// Range to the first rectangle along the ray (unit direction), if any within max_range_m.
-inline std::optional<double> cast_ray(const Scene& scene, const Eigen::Vector3d& from, const Eigen::Vector3d& direction, double max_range_m) {
+inline std::optional<double> cast_ray(const Scene& scene, const Eigen::Vector3d& from, const Eigen::Vector3d& direction,
+                                      double max_range_m) {
   double nearest = max_range_m;
   bool hit = false;
   for (const Rectangle& r : scene.rectangles) {
@@ -98,7 +106,7 @@ inline std::optional<double> cast_ray(const Scene& scene, const Eigen::Vector3d&
 struct ScannerSetup {
   std::size_t num_rays = 60000;  ///< spread evenly over the sphere (Fibonacci)
   double max_range_m = 1e6;
-  double noise_m = 0;            ///< standard deviation of the range
+  double noise_m = 0;  ///< standard deviation of the range
   std::uint64_t seed = 1;
 };
 
@@ -109,7 +117,8 @@ inline Points scan_scene(const Scene& scene, const Transform& world_from_scan, c
   const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
   const double start = rng.uniform(0, 6.28);  // no two scans share their beams
   for (std::size_t k = 0; k < setup.num_rays; ++k) {
-    const double z = 1 - 2 * (static_cast<double>(k) + 0.5) / static_cast<double>(setup.num_rays), r = std::sqrt(1 - z * z);
+    const double z = 1 - 2 * (static_cast<double>(k) + 0.5) / static_cast<double>(setup.num_rays),
+                 r = std::sqrt(1 - z * z);
     const double angle = golden * static_cast<double>(k) + start;
     const Eigen::Vector3d d(r * std::cos(angle), r * std::sin(angle), z);
     const auto range = cast_ray(scene, world_from_scan.translation(), world_from_scan.linear() * d, setup.max_range_m);

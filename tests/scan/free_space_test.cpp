@@ -64,8 +64,8 @@ TEST(FreeSpaceImage, DilationByHand) {
   cell(raw, 0, 2, 3) = 7;
   cell(raw, 0, 1, 2) = 9;
   FreeSpace out = dilated_free_space(raw);
-  EXPECT_EQ(cell(out, 0, 2, 2), 7);   // the minimum around
-  EXPECT_EQ(cell(out, 0, 1, 3), 7);   // a hole between three returns is filled
+  EXPECT_EQ(cell(out, 0, 2, 2), 7);     // the minimum around
+  EXPECT_EQ(cell(out, 0, 1, 3), 7);     // a hole between three returns is filled
   EXPECT_EQ(cell(out, 0, 3, 3), kInf);  // two neighbours do not fill a hole
   EXPECT_EQ(cell(out, 0, 0, 0), kInf);
   EXPECT_EQ(cell(out, 1, 2, 2), kInf);  // other faces know nothing of it
@@ -76,7 +76,8 @@ TEST(FreeSpaceImage, ASparseScanGetsCoarserCells) {
   for (std::size_t i = 0; i < full.nearest_m.size(); ++i) full.nearest_m[i] = static_cast<float>(5 + i % 7);
   for (std::uint32_t face = 0; face < 6; ++face)
     for (std::uint32_t row = 0; row < 16; row += 2)
-      for (std::uint32_t column = 0; column < 16; column += 2) cell(sparse, face, row, column) = static_cast<float>(row + column + 1);
+      for (std::uint32_t column = 0; column < 16; column += 2)
+        cell(sparse, face, row, column) = static_cast<float>(row + column + 1);
   EXPECT_EQ(at_scan_resolution(full).size, 16u);
   const FreeSpace coarse = at_scan_resolution(sparse);
   EXPECT_EQ(coarse.size, 8u);
@@ -86,7 +87,8 @@ TEST(FreeSpaceImage, ASparseScanGetsCoarserCells) {
 }
 
 TEST(FreeSpaceImage, ARoomIsSeenThroughUpToItsWallsAndNotBeyond) {
-  const SampledScan scan = sampled(scan_scene(testing::furnished_hall(4), pose_of({0.3, 0, 1.7}), {120000, 1e6, 0, 1}), 0.2);
+  const SampledScan scan =
+      sampled(scan_scene(testing::furnished_hall(4), pose_of({0.3, 0, 1.7}), {120000, 1e6, 0, 1}), 0.2);
   ASSERT_GT(scan.free_space.size, 0u);
   std::size_t free_before = 0, free_at = 0, free_behind = 0;
   for (const auto& p : scan.points) {

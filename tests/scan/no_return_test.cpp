@@ -21,7 +21,8 @@ Scene yard() {
   scene.add_rectangle({-30, -30, 0}, {60, 0, 0}, {0, 60, 0});
   Rng rng(4);
   for (int k = 0; k < 12; ++k)
-    scene.add_box({rng.uniform(-15, 15), rng.uniform(-15, 15), 1}, {rng.uniform(0.5, 4), rng.uniform(0.5, 3), rng.uniform(1, 6)},
+    scene.add_box({rng.uniform(-15, 15), rng.uniform(-15, 15), 1},
+                  {rng.uniform(0.5, 4), rng.uniform(0.5, 3), rng.uniform(1, 6)},
                   rotation_from_vector({0, 0, rng.uniform(0, 3)}));
   return scene;
 }
@@ -48,7 +49,8 @@ TEST(NoReturnShell, IsFoundNamedAndDropped) {
     EXPECT_FALSE(expected.no_return_range_m);
     EXPECT_EQ(scan.num_dropped - expected.num_dropped, dirty.size() - low.size());
     EXPECT_EQ(store::to_bytes(scan.points), store::to_bytes(expected.points));
-    EXPECT_EQ(store::to_bytes(scan.free_space), store::to_bytes(expected.free_space)) << "the shell must not look like free space";
+    EXPECT_EQ(store::to_bytes(scan.free_space), store::to_bytes(expected.free_space))
+        << "the shell must not look like free space";
     EXPECT_FALSE(scan.notes.empty());
   }
 }

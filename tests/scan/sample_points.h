@@ -17,8 +17,9 @@ struct SamplingSetup {
 inline Result<SampledScan> try_sampling(const Points& points, double voxel_m, const SamplingSetup& setup = {}) {
   VoxelSampler sampler(setup.header, voxel_m, setup.options);
   for (std::size_t i = 0; i < points.size(); i += setup.chunk)
-    sampler.add(chunk_of(Points(points.begin() + static_cast<std::ptrdiff_t>(i),
-                                points.begin() + static_cast<std::ptrdiff_t>(std::min(points.size(), i + setup.chunk)))));
+    sampler.add(
+        chunk_of(Points(points.begin() + static_cast<std::ptrdiff_t>(i),
+                        points.begin() + static_cast<std::ptrdiff_t>(std::min(points.size(), i + setup.chunk)))));
   return sampler.finish();
 }
 

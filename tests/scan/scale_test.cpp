@@ -16,7 +16,9 @@ using testing::pose_of;
 using testing::scan_scene;
 using Points = testing::Points;
 
-Points hall_points(std::size_t rays = 40000) { return scan_scene(furnished_hall(5), pose_of({0, 0, 1.7}), {rays, 1e6, 0.002, 3}); }
+Points hall_points(std::size_t rays = 40000) {
+  return scan_scene(furnished_hall(5), pose_of({0, 0, 1.7}), {rays, 1e6, 0.002, 3});
+}
 
 Points scaled(Points points, float factor) {
   for (auto& p : points) p *= factor;
@@ -37,7 +39,8 @@ TEST(Scale, AProbeOfAFewPointsSaysTheSameAsAllOfThem) {
   const Points points = hall_points(100000);
   Points probe;
   for (std::size_t i = 0; i < points.size(); i += 11) probe.push_back(points[i]);
-  const auto whole = scale_of_probe(chunk_of(points), points.size(), 6000), part = scale_of_probe(chunk_of(probe), points.size(), 6000);
+  const auto whole = scale_of_probe(chunk_of(points), points.size(), 6000),
+             part = scale_of_probe(chunk_of(probe), points.size(), 6000);
   ASSERT_TRUE(whole && part);
   EXPECT_NEAR(std::log(part->voxel_m / whole->voxel_m), 0, std::log(1.3));
   EXPECT_EQ(part->spacing_m, 0) << "the spacing of a probe is not that of the scan";

@@ -84,7 +84,8 @@ TEST(Station, CheckByHand) {
   const auto add_wall = [&](float distance, int from) {
     for (int y = from; y <= 10; ++y)
       for (int z = -10; z <= 10; ++z) {
-        points.emplace_back(distance, 0.04f * distance * static_cast<float>(y), 0.04f * distance * static_cast<float>(z));
+        points.emplace_back(distance, 0.04f * distance * static_cast<float>(y),
+                            0.04f * distance * static_cast<float>(z));
         normals.push_back(Eigen::Vector3f::UnitX());
       }
   };

@@ -32,7 +32,8 @@ Points square_of_points(int n, const Eigen::Matrix3d& turn) {
 }
 
 TEST(Surface, APlaneHasItsNormalAndNoVariation) {
-  for (const Eigen::Vector3d& turn : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, -0.4, 2), Eigen::Vector3d(1.5708, 0, 0)}) {
+  for (const Eigen::Vector3d& turn :
+       {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, -0.4, 2), Eigen::Vector3d(1.5708, 0, 0)}) {
     const Eigen::Matrix3d r = rotation_from_vector(turn);
     const SurfaceEstimate surface = estimate_surface(bare(square_of_points(9, r)), 1.0f);
     const Eigen::Vector3f normal = r.col(2).cast<float>();

@@ -21,7 +21,9 @@ using Points = testing::Points;
 
 const float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
 
-Points hall_scan(std::size_t rays = 30000) { return scan_scene(furnished_hall(1), pose_of({0, 0, 1.7}), {rays, 1e6, 0.003, 5}); }
+Points hall_scan(std::size_t rays = 30000) {
+  return scan_scene(furnished_hall(1), pose_of({0, 0, 1.7}), {rays, 1e6, 0.003, 5});
+}
 
 // Five by five voxels of 1 m, each with the points (1/4, 1/4, 1/4) and (3/4, 1/2, 1/2) of it.
 Points two_points_a_voxel() {
@@ -131,7 +133,8 @@ TEST(VoxelSampler, MapCoordinatesWithoutAStationHaveNoFreeSpace) {
 
 TEST(VoxelSampler, TooFewVoxelsIsAnErrorThatSaysHowMany) {
   Points nine;
-  for (int i = 0; i < 9; ++i) nine.emplace_back(static_cast<float>(i % 3) + 0.5f, static_cast<float>(i / 3) + 0.5f, 0.2f);
+  for (int i = 0; i < 9; ++i)
+    nine.emplace_back(static_cast<float>(i % 3) + 0.5f, static_cast<float>(i / 3) + 0.5f, 0.2f);
   const auto few = try_sampling(nine, 1.0);
   ASSERT_FALSE(few);
   EXPECT_NE(few.error().what.find("9 voxels"), std::string::npos) << few.error().text();
@@ -174,7 +177,8 @@ TEST(VoxelSampler, TheFineLevelLiesInTheCoarseVoxels) {
   for (const auto& p : scan.points) coarse.insert(cell(p, kVoxel));
   EXPECT_EQ(coarse.size(), scan.points.size()) << "one point a voxel";
   std::size_t inside = 0;
-  for (const auto& p : scan.fine.points) inside += coarse.count(cell(p, kVoxel)), fine.insert(cell(p, scan.fine.voxel_m));
+  for (const auto& p : scan.fine.points)
+    inside += coarse.count(cell(p, kVoxel)), fine.insert(cell(p, scan.fine.voxel_m));
   EXPECT_EQ(fine.size(), scan.fine.points.size()) << "one point a fine voxel";
   EXPECT_GT(inside, scan.fine.points.size() * 995 / 1000);  // a coarse voxel alone in the air may be left out
 }

@@ -132,7 +132,8 @@ TEST_F(PairCommand, is_3_when_nothing_is_to_be_found) {
     for (int j = 0; j < 200; ++j) {
       plane << i * 0.03 << ' ' << j * 0.03 << " -1.5\n";
       const double a = i * 0.0314, b = (j + 0.5) * 0.0157;
-      sphere << 3 + 2 * std::cos(a) * std::sin(b) << ' ' << 2 * std::sin(a) * std::sin(b) << ' ' << 2 * std::cos(b) << '\n';
+      sphere << 3 + 2 * std::cos(a) * std::sin(b) << ' ' << 2 * std::sin(a) * std::sin(b) << ' ' << 2 * std::cos(b)
+             << '\n';
     }
   }
   plane.close();

@@ -1,0 +1,112 @@
+#include "pairwise/hypothesis.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "pairwise/threads.h"
+#include "regions/hall_pair.h"
+
+namespace isthmus {
+namespace {
+
+using testing::HallPair;
+using testing::pose_of;
+
+Hypothesis at(const Transform& t, double score = 0) {
+  Hypothesis h;
+  h.target_from_source = t;
+  h.score = score;
+  return h;
+}
+
+TEST(Polish, BringsANearPoseToTheTruthFromBothSides) {
+  const HallPair pair;
+  Hypothesis h = at(pose_of({0.06, -0.05, 0.05}, {0.004, -0.006, 0.008}) * pair.data.target_from_source);
+  polish(pair.source, pair.target, 100000, 8, h);
+  EXPECT_LT(testing::largest_displacement_m(pair.data.source, h.target_from_source, pair.data.target_from_source),
+            0.25 * testing::kHallVoxel);
+  EXPECT_GT(h.rms_m, 0);
+  EXPECT_LT(h.rms_m, 0.5 * testing::kHallVoxel);
+  // Seen from the other scan it is the same alignment.
+  Hypothesis back = at(h.target_from_source.inverse());
+  polish(pair.target, pair.source, 100000, 8, back);
+  EXPECT_LT(testing::largest_displacement_m(pair.data.source, back.target_from_source.inverse(), h.target_from_source),
+            0.1 * testing::kHallVoxel);
+}
+
+TEST(Polish, FarFromEverythingThePoseStays) {
+  const HallPair pair;
+  const Transform nowhere = pose_of({300, 0, 0});
+  Hypothesis h = at(nowhere);
+  polish(pair.source, pair.target, 1000, 4, h);
+  EXPECT_LT(displacement_m(h.target_from_source, nowhere, {0, 0, 0}), 1e-9);
+}
+
+TEST(KeepDistinct, TheBestOfTwinsStays) {
+  const HallPair pair;
+  const Transform t = pair.data.target_from_source;
+  std::vector<Hypothesis> all{at(t, 0.2), at(pose_of({0.1, 0, 0}) * t, 0.6), at(pose_of({3, 0, 0}) * t, 0.4),
+                              at(t * pose_of({0, 0, 0}, {0, 0, 0.5}), 0.1)};
+  keep_distinct(pair.source, 0.3, all);
+  ASSERT_EQ(all.size(), 3u);
+  EXPECT_EQ(all[0].score, 0.6);
+  EXPECT_EQ(all[1].score, 0.4);
+  EXPECT_EQ(all[2].score, 0.1);
+  std::vector<Hypothesis> none;
+  keep_distinct(pair.source, 0.3, none);
+  EXPECT_TRUE(none.empty());
+}
+
+std::vector<Hypothesis> truth_and_wrong_poses(const HallPair& pair, int wrong) {
+  Rng rng(9);
+  std::vector<Hypothesis> all;
+  for (int k = 0; k < wrong; ++k)
+    all.push_back(at(pose_of({rng.uniform(-4, 4), rng.uniform(-4, 4), 0}, {0, 0, rng.uniform(-3, 3)}) *
+                     pair.data.target_from_source));
+  all.push_back(at(pair.data.target_from_source));
+  return all;
+}
+
+TEST(Weigh, TheTruthComesFirst) {
+  for (const std::uint64_t hall : {1u, 2u}) {
+    const HallPair pair({0, 0, 0.4}, hall);
+    auto all = truth_and_wrong_poses(pair, 40);
+    weigh(pair.source, pair.target, 2000, all);
+    EXPECT_LT(displacement_m(all[0].target_from_source, pair.data.target_from_source, {0, 0, 0}), 1e-9);
+    EXPECT_TRUE(std::is_sorted(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.score > b.score; }));
+    for (const Hypothesis& h : all)
+      for (const DirectedEvidence& e : {h.source, h.target}) {
+        EXPECT_TRUE(e.support >= 0 && e.support <= 1);
+        EXPECT_TRUE(e.rare_support >= 0 && e.rare_support <= e.support + 1e-6) << "weights are at most one";
+        EXPECT_TRUE(e.contradiction >= 0 && e.contradiction <= 1);
+        EXPECT_TRUE(e.against >= 0 && e.against <= 1);
+      }
+  }
+}
+
+// As in document retrieval: a word in every document says nothing.
+TEST(Weigh, WhatEveryHypothesisExplainsWeighsLittle) {
+  const HallPair pair;
+  auto alone = truth_and_wrong_poses(pair, 30);
+  std::vector<Hypothesis> crowd(31, at(pair.data.target_from_source));
+  weigh(pair.source, pair.target, 2000, alone);
+  weigh(pair.source, pair.target, 2000, crowd);
+  EXPECT_NEAR(alone[0].source.support, crowd[0].source.support, 1e-9) << "support itself does not depend on the others";
+  EXPECT_LT(crowd[0].source.rare_support, 0.5 * alone[0].source.rare_support);
+}
+
+TEST(Weigh, TheSameForAnyNumberOfThreads) {
+  const HallPair pair;
+  const auto scores = [&] {
+    auto all = truth_and_wrong_poses(pair, 20);
+    weigh(pair.source, pair.target, 1000, all);
+    std::vector<double> out;
+    for (const Hypothesis& h : all) out.insert(out.end(), {h.score, h.source.rare_support, h.target.contradiction});
+    return out;
+  };
+  EXPECT_EQ(testing::with_threads(1, scores), testing::with_threads(7, scores));
+}
+
+}  // namespace
+}  // namespace isthmus

@@ -1,0 +1,131 @@
+// The shape of the verdict, whatever its coefficients.
+#include "pairwise/judge.h"
+
+#include <gtest/gtest.h>
+
+namespace isthmus {
+namespace {
+
+PairEvidence good_evidence() {
+  PairEvidence e;
+  e.score = 0.3;
+  e.rival_score = 0.01;
+  e.support = 0.5;
+  e.rare_support = 0.3;
+  e.contradiction = 0.001;
+  e.against = 0.01;
+  e.rms_voxels = 0.1;
+  e.observability = 0.5;
+  e.num_supported = 4000;
+  e.free_space = true;
+  return e;
+}
+
+TEST(Probability, IsAProbabilityForAnyEvidence) {
+  for (const double score : {-1.0, 0.0, 1e-9, 0.01, 1.0})
+    for (const double rival : {0.0, 1e-9, 0.01, 1.0})
+      for (const double contradiction : {0.0, 0.05, 1.0})
+        for (const double supported : {0.0, 1.0, 1e6}) {
+          PairEvidence e = good_evidence();
+          e.score = score, e.rival_score = rival, e.contradiction = contradiction, e.num_supported = supported;
+          e.support = supported > 0 ? 0.3 : 0;
+          const double p = probability_of(e);
+          EXPECT_TRUE(p >= 0 && p <= 1) << score << " " << rival << " " << contradiction << " " << supported << ": "
+                                        << p;
+        }
+  const double nothing = probability_of({});
+  EXPECT_LT(nothing, 0.5);
+}
+
+TEST(Probability, GrowsWithTheScoreAndFallsWithTheRivalAndContradiction) {
+  double last = 0;
+  for (const double score : {0.005, 0.02, 0.05, 0.1, 0.2, 0.5}) {
+    PairEvidence e = good_evidence();
+    e.score = score;
+    EXPECT_GE(probability_of(e), last);
+    last = probability_of(e);
+  }
+  last = 1;
+  for (const double rival : {0.0, 0.03, 0.1, 0.2, 0.3}) {
+    PairEvidence e = good_evidence();
+    e.rival_score = rival;
+    EXPECT_LE(probability_of(e), last);
+    last = probability_of(e);
+  }
+  last = 1;
+  for (const double contradiction : {0.0, 0.01, 0.03, 0.1, 0.3}) {
+    PairEvidence e = good_evidence();
+    e.contradiction = contradiction;
+    EXPECT_LE(probability_of(e), last);
+    last = probability_of(e);
+  }
+}
+
+TEST(Probability, AnEqualRivalIsNeverTrusted) {
+  PairEvidence e = good_evidence();
+  e.rival_score = e.score;
+  PairResult result;
+  judge(e, {}, result);
+  EXPECT_NE(result.verdict, Verdict::accepted);
+  EXPECT_FALSE(result.reason.empty());
+}
+
+TEST(Judge, TheVerdictIsTheProbabilityCutAtTheOptions) {
+  const double p = probability_of(good_evidence());
+  PairOptions options;
+  const auto verdict = [&](double accept, double ambiguous) {
+    options.accept_probability = accept, options.ambiguous_probability = ambiguous;
+    PairResult result;
+    judge(good_evidence(), options, result);
+    EXPECT_EQ(result.probability, p);
+    EXPECT_FALSE(result.reason.empty());
+    EXPECT_NE(result.reason, "not computed");
+    return result.verdict;
+  };
+  EXPECT_EQ(verdict(p, 0), Verdict::accepted) << "at the limit";
+  EXPECT_EQ(verdict(p + 1e-6, 0), Verdict::ambiguous);
+  EXPECT_EQ(verdict(1.1, p), Verdict::ambiguous);
+  EXPECT_EQ(verdict(1.1, p + 1e-6), Verdict::rejected);
+}
+
+TEST(Judge, TheEvidenceIsNamedInAFixedOrder) {
+  PairResult a, b;
+  judge(good_evidence(), {}, a);
+  judge({}, {}, b);
+  ASSERT_EQ(a.evidence.size(), b.evidence.size());
+  for (std::size_t k = 0; k < a.evidence.size(); ++k) EXPECT_EQ(a.evidence[k].first, b.evidence[k].first);
+  const auto term = [&](const std::string& name) {
+    for (const auto& [key, value] : a.evidence)
+      if (key == name) return value;
+    ADD_FAILURE() << "no term " << name;
+    return 0.0;
+  };
+  EXPECT_EQ(term("score"), 0.3);
+  EXPECT_EQ(term("rival_score"), 0.01);
+  EXPECT_EQ(term("contradiction"), 0.001);
+  EXPECT_EQ(term("free_space"), 1);
+}
+
+TEST(Judge, TheReasonNamesWhatSpokeAgainstThePose) {
+  PairOptions never;
+  never.accept_probability = 1.1;
+  PairResult rival, free_space;
+  PairEvidence e = good_evidence();
+  e.rival_score = 0.99 * e.score;
+  judge(e, never, rival);
+  EXPECT_NE(rival.reason.find("rival"), std::string::npos) << rival.reason;
+  e = good_evidence();
+  e.contradiction = 0.3;
+  judge(e, never, free_space);
+  EXPECT_NE(free_space.reason.find("saw through"), std::string::npos) << free_space.reason;
+}
+
+TEST(Verdict, WordsOfTheOutputs) {
+  EXPECT_STREQ(to_string(Verdict::accepted), "accepted");
+  EXPECT_STREQ(to_string(Verdict::ambiguous), "ambiguous");
+  EXPECT_STREQ(to_string(Verdict::rejected), "rejected");
+  EXPECT_STREQ(to_string(Verdict::failed), "failed");
+}
+
+}  // namespace
+}  // namespace isthmus

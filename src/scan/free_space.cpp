@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace isthmus {
 
@@ -43,6 +44,13 @@ FreeSpace at_scan_resolution(const FreeSpace& raw) {
   FreeSpace image = raw;
   for (int level = 0; level < 3 && filled_share(image) < kFilled; ++level) image = halved(image);
   return image;
+}
+
+FreeSpace at_least_cells_of(const FreeSpace& image, double cell_rad) {
+  constexpr std::uint32_t kSmallest = 8;
+  FreeSpace out = image;
+  while (out.size > kSmallest && std::numbers::pi / 2 / out.size < cell_rad) out = halved(out);
+  return out;
 }
 
 FreeSpace dilated_free_space(const FreeSpace& raw) {

@@ -31,6 +31,9 @@ inline std::uint32_t cube_cell(const Eigen::Vector3f& d, std::uint32_t size) {
 /// a thinned or sparse scan does not see between its beams. size must be a multiple of 8.
 FreeSpace at_scan_resolution(const FreeSpace& raw);
 
+/// The image at cells of at least `cell_rad`, but no fewer than 8 a face's side.
+FreeSpace at_least_cells_of(const FreeSpace& image, double cell_rad);
+
 /// Minimum over each cell and its neighbours on the same face; a cell without returns stays empty unless at least three
 /// neighbours have one (thinned scans leave holes). `nearest_m` as accumulated from raw points: +inf = nothing.
 FreeSpace dilated_free_space(const FreeSpace& raw);

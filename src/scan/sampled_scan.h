@@ -41,6 +41,7 @@ struct SampledScan {
   Eigen::Vector3d local_origin_in_scan = Eigen::Vector3d::Zero();
   StationKind station_kind = StationKind::unknown;
   Eigen::Vector3f station = Eigen::Vector3f::Zero();           ///< in the local frame; meaningful unless unknown
+  double station_sigma_m = 0;                                  ///< how far from `station` the scanner may have stood
   double blocked_share = 0;  ///< sight lines from the station that pass through a surface: how far free space can be trusted
   std::vector<Eigen::Vector3f> points;                         ///< one centroid per voxel, sorted by voxel index
   std::vector<Eigen::Vector3f> normals;                        ///< unit, oriented to the station
@@ -56,7 +57,7 @@ struct SampledScan {
 
   template <class F>
   void fields(F&& f) {
-    f(voxel_m), f(local_origin_in_scan), f(station_kind), f(station), f(blocked_share), f(points), f(normals), f(variation), f(counts), f(fine), f(free_space);
+    f(voxel_m), f(local_origin_in_scan), f(station_kind), f(station), f(station_sigma_m), f(blocked_share), f(points), f(normals), f(variation), f(counts), f(fine), f(free_space);
     f(spacing_m), f(num_read), f(num_dropped), f(no_return_range_m), f(notes);
   }
 };

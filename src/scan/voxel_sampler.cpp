@@ -81,6 +81,8 @@ struct VoxelSampler::State {
   std::uint64_t num_read = 0, num_dropped = 0;
   FreeSpace raw;
   std::vector<std::uint32_t> ranges;
+  Eigen::Vector3d ray_sum = Eigen::Vector3d::Zero();  // of the rays from the candidate station
+  double sq_range_sum = 0;
   bool finished = false;
 
   Voxel& voxel(std::uint64_t key);
@@ -191,6 +193,8 @@ void VoxelSampler::add(const PointChunk& chunk) {
         float& nearest = s.raw.nearest_m[cube_cell(ray, kCubeSize)];
         nearest = std::min(nearest, range);
         ++s.ranges[range_bin(range)];
+        s.ray_sum += ray.cast<double>();
+        s.sq_range_sum += static_cast<double>(range) * static_cast<double>(range);
       }
     }
   }
@@ -304,11 +308,16 @@ Result<SampledScan> VoxelSampler::finish() {
                             s.voxel_m, s.num_read - out.num_dropped, s.num_read),
                 "", "check the file's content and unit, or set sampling.voxel_m");
   if (median_count(s.voxels) >= kMinFineCount) fill(out.fine, s.voxels, s.fine_voxel_m);
+  // No scanner stands at the mean of what it sees to a ten-thousandth: such a cloud was centred by a program.
+  constexpr double kCentred = 1e-4;
+  const auto num_rays = static_cast<double>(s.num_read);
+  const bool centred = s.candidate_station && !s.station_from_file &&
+                       s.ray_sum.norm() < kCentred * std::sqrt(s.sq_range_sum * num_rays);
   StationCheck check;
   if (s.candidate_station) check = check_station(out.points, out.normals, static_cast<float>(s.voxel_m), *s.candidate_station);
   const bool object = check.median_range_m < kObjectRangeM && check.concentration > kObjectConcentration;
-  const bool believed = s.candidate_station && (s.options.station == "origin" || (check.blocked < kMaxBlocked && !object &&
-                                                                                  check.concentration < kMaxConcentration));
+  const bool plausible = check.blocked < kMaxBlocked && !object && check.concentration < kMaxConcentration;
+  const bool believed = s.candidate_station && (s.options.station == "origin" || (plausible && !centred));
   if (believed) {
     out.station_kind = StationKind::origin;
     out.station = *s.candidate_station;
@@ -316,6 +325,20 @@ Result<SampledScan> VoxelSampler::finish() {
     orient_to_station(out.points, out.station, out.normals);
     orient_to_station(out.fine.points, out.station, out.fine.normals);
     out.free_space = dilated_free_space(at_scan_resolution(s.raw));
+  } else if (plausible && s.candidate_station) {
+    // Not where the scanner stood, but in its midst: good enough to tell the sides of surfaces, and what was seen
+    // through where it does not depend on some metres.
+    out.station_kind = StationKind::estimated;
+    out.station = *s.candidate_station;
+    constexpr double kSigmaOfMedianRange = 0.03;
+    out.station_sigma_m = kSigmaOfMedianRange * check.median_range_m;
+    out.blocked_share = check.blocked;
+    orient_to_station(out.points, *s.candidate_station, out.normals);
+    orient_to_station(out.fine.points, *s.candidate_station, out.fine.normals);
+    out.free_space = dilated_free_space(
+        at_least_cells_of(at_scan_resolution(s.raw), out.station_sigma_m / std::max(check.median_range_m, 1e-9)));
+    out.notes.push_back(fmt::format("the cloud is centred on its mean: its station is taken to be there within {:.2g} m",
+                                    out.station_sigma_m));
   } else {
     orient_outwards(out.points, static_cast<float>(s.voxel_m), out.normals);
     orient_like(out.points, out.normals, static_cast<float>(s.voxel_m), out.fine.points, out.fine.normals);

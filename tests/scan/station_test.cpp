@@ -70,6 +70,19 @@ TEST(Station, AnObjectsOriginIsNotTheCamera) {
   }
 }
 
+// Programs shift clouds to their mean: the origin then lies among the points, but not where the scanner stood.
+TEST(Station, ACentredCloudHasAStationWithinSomeMetresOnly) {
+  Points points = scan_scene(furnished_hall(2), pose_of({1, 0.5, 1.7}));
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const auto& p : points) mean += p.cast<double>();
+  mean /= static_cast<double>(points.size());
+  const SampledScan scan = sampled(moved(points, pose_of(-mean)), 0.2);
+  EXPECT_EQ(scan.station_kind, StationKind::estimated);
+  EXPECT_GT(scan.station_sigma_m, 0.05);
+  EXPECT_GT(scan.free_space.size, 0u);
+  EXPECT_EQ(sampled(points, 0.2).station_sigma_m, 0);
+}
+
 TEST(Station, TheUserHasTheLastWord) {
   const Points room = scan_scene(furnished_hall(2), pose_of({1, 0.5, 1.7}));
   EXPECT_EQ(sampled(room, 0.2, station_option("unknown")).station_kind, StationKind::unknown);

@@ -100,6 +100,22 @@ TEST(Surface, WithoutAStationASphereIsSeenFromOutside) {
     EXPECT_GT(scan.fine.normals[i].dot((scan.fine.points[i] - centre.cast<float>()).normalized()), 0.5f);
 }
 
+// A depth image of a ball with a plate far behind it: seen from its middle, the plate faces inwards.
+TEST(Surface, TheNormalsOfADepthImageFaceTheViewer) {
+  Points points;
+  for (const Eigen::Vector3f& p : testing::sphere_points(20000, {0, 0, 0}, 1, 1))
+    if (p.z() > 0.2f) points.push_back(p);
+  for (int i = 0; i < 60; ++i)
+    for (int j = 0; j < 60; ++j) {
+      const Eigen::Vector3f p(-3 + 0.1f * static_cast<float>(i), -3 + 0.1f * static_cast<float>(j), -1.5f);
+      if (p.head<2>().norm() > 1.3f) points.push_back(p);
+    }
+  const SampledScan scan = sampled(points, 0.15, station_option("unknown"));
+  std::size_t facing = 0;
+  for (const auto& n : scan.normals) facing += n.z() > 0;
+  EXPECT_GT(facing, scan.normals.size() * 98 / 100);
+}
+
 TEST(Surface, OrientOutwardsTurnsEachPartAsAWhole) {
   Points points = testing::sphere_points(3000, {-4, 0, 0}, 1, 1);
   const Points other = testing::sphere_points(3000, {4, 0, 0}, 1, 2);

@@ -12,6 +12,8 @@ constexpr int kDirections = 2500;       // on a half sphere: about 3 degrees apa
 constexpr float kFlatVariation = 0.03f; // rougher surroundings have no normal worth a vote
 constexpr float kWindowRad = 6.0f * std::numbers::pi_v<float> / 180;
 constexpr double kMinParallelShare = 0.04;
+constexpr double kMinPerpendicularGain = 3;   // times even scatter: trunks and poles over ground too rough for a plane
+constexpr double kMinShareOfFirst = 0.5;     // weaker ones beside a strong axis are chance
 constexpr double kPerpendicularWeight = 0.5;  // walls of any heading are across: they tell less than a floor
 
 struct Counts {
@@ -33,6 +35,25 @@ Counts count(std::span<const Eigen::Vector3f> normals, const Eigen::Vector3f& d,
 // How many more normals lie along and across d than in even scatter.
 double score(const Counts& c, float window_rad) {
   return c.parallel - (1 - std::cos(window_rad)) + kPerpendicularWeight * (c.perpendicular - std::sin(window_rad));
+}
+
+// Do the normals across d look all round, as those of trunks, and not one way, as those of a plane?
+bool look_round(std::span<const Eigen::Vector3f> normals, const Eigen::Vector3f& d) {
+  constexpr float kLeastOfTrace = 0.15f;
+  Eigen::Matrix3f scatter = Eigen::Matrix3f::Zero();
+  for (const auto& n : normals)
+    if (std::abs(n.dot(d)) < std::sin(kWindowRad)) scatter += n * n.transpose();
+  const Eigen::Vector3f values =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f>(scatter, Eigen::EigenvaluesOnly).eigenvalues();
+  return values[1] > kLeastOfTrace * values.sum();  // values[0] belongs to d itself
+}
+
+// Enough normals along d (floors, walls), or far more across it, all round, than even scatter has.
+bool organises(std::span<const Eigen::Vector3f> normals, const Eigen::Vector3f& d, const Counts& c,
+               double share_of_least) {
+  const double even_parallel = 1 - std::cos(kWindowRad), even_across = std::sin(kWindowRad);
+  if (c.parallel >= share_of_least * std::max(kMinParallelShare, 2 * even_parallel)) return true;
+  return c.perpendicular >= share_of_least * kMinPerpendicularGain * even_across && look_round(normals, d);
 }
 
 // Least squares: normals along d vote for it, normals across vote against their own direction.
@@ -95,7 +116,7 @@ std::vector<DominantAxis> dominant_axes(std::span<const Eigen::Vector3f> normals
     const Eigen::Vector3f d(static_cast<float>(r * std::cos(golden * k)), static_cast<float>(r * std::sin(golden * k)),
                             static_cast<float>(z));
     const Counts c = count(thinned, d, kWindowRad);
-    if (c.parallel < kMinParallelShare / 2) continue;
+    if (!organises(thinned, d, c, 0.5)) continue;
     scored.emplace_back(score(c, kWindowRad), d);
   }
   std::stable_sort(scored.begin(), scored.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
@@ -110,11 +131,12 @@ std::vector<DominantAxis> dominant_axes(std::span<const Eigen::Vector3f> normals
     if (taken(direction)) continue;
     const Eigen::Vector3f d = refined(flat, direction);
     const Counts c = count(flat, d, kWindowRad);
-    if (c.parallel < kMinParallelShare || c.parallel < 2 * (1 - std::cos(kWindowRad)) || taken(d)) continue;
+    if (!organises(flat, d, c, 1) || taken(d)) continue;
     axes.push_back(described(flat, d));
     if (axes.size() == max_axes) break;
   }
   std::stable_sort(axes.begin(), axes.end(), [](const auto& a, const auto& b) { return a.weight > b.weight; });
+  while (axes.size() > 1 && axes.back().weight < kMinShareOfFirst * axes.front().weight) axes.pop_back();
   return axes;
 }
 

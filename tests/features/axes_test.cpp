@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "base/rng.h"
 #include "scan/sample_points.h"
 
 namespace isthmus {
@@ -78,6 +79,25 @@ TEST(DominantAxes, RoughSurroundingsHaveNoVote) {
   const std::vector<float> rough(scan.points.size(), 0.3f);
   EXPECT_TRUE(dominant_axes(scan.normals, rough, 3).empty());
   EXPECT_TRUE(dominant_axes({}, {}, 3).empty());
+}
+
+// Posts on ground too rough for a plane: only what stands across tells the vertical.
+TEST(DominantAxes, PostsAloneShowTheVertical) {
+  std::vector<Eigen::Vector3f> normals;
+  std::vector<float> variation;
+  Rng rng(8);
+  for (int k = 0; k < 3000; ++k) {
+    const double a = rng.uniform(-3.14, 3.14), tilt = 0.03 * rng.normal();
+    normals.push_back(Eigen::Vector3d(std::cos(a), std::sin(a), tilt).normalized().cast<float>());
+    variation.push_back(0.01f);
+  }
+  for (int k = 0; k < 2000; ++k) {  // leaves and ground: any direction
+    normals.push_back(Eigen::Vector3d(rng.normal(), rng.normal(), rng.normal()).normalized().cast<float>());
+    variation.push_back(0.02f);
+  }
+  const auto axes = dominant_axes(normals, variation, 3);
+  ASSERT_EQ(axes.size(), 1u);
+  EXPECT_LT(angle_between_deg(axes[0].direction, Eigen::Vector3d::UnitZ()), 1);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "regions/column_votes.h"
 #include "regions/pair_votes.h"
 #include "regions/pose_votes.h"
 
@@ -10,23 +11,42 @@ namespace isthmus {
 namespace {
 
 // The strongest axis of one scan may be any axis of the other; a sign that the normals leave open is tried both ways.
-std::vector<Seed> axis_votes(const GeneratorContext& c) {
+// The most likely pairs first.
+std::vector<std::pair<Eigen::Vector3f, Eigen::Vector3f>> common_axes(const GeneratorContext& c) {
   constexpr float kSureSign = 0.9f;
-  VoteOptions options;
-  options.matches_per_keypoint = static_cast<std::uint32_t>(c.options.matches_per_keypoint);
-  options.window_voxels = static_cast<float>(c.options.vote_window_voxels);
-  std::vector<Seed> seeds;
-  const auto add = [&](const Eigen::Vector3f& from, const Eigen::Vector3f& to) {
-    const auto more = vote_seeds_about_axis(c.source, c.target, c.matches, from, to, options);
-    seeds.insert(seeds.end(), more.begin(), more.end());
-  };
+  std::vector<std::pair<Eigen::Vector3f, Eigen::Vector3f>> out;
   const auto &from = c.source.features.axes, &to = c.target.features.axes;
   for (std::size_t a = 0; a < from.size(); ++a)
     for (std::size_t b = 0; b < to.size(); ++b) {
       if (a > 0 && b > 0) continue;
-      add(from[a].direction, to[b].direction);
-      if (std::min(from[a].sign_agreement, to[b].sign_agreement) < kSureSign) add(from[a].direction, -to[b].direction);
+      out.emplace_back(from[a].direction, to[b].direction);
+      if (std::min(from[a].sign_agreement, to[b].sign_agreement) < kSureSign)
+        out.emplace_back(from[a].direction, -to[b].direction);
     }
+  return out;
+}
+
+std::vector<Seed> axis_votes(const GeneratorContext& c) {
+  VoteOptions options;
+  options.matches_per_keypoint = static_cast<std::uint32_t>(c.options.matches_per_keypoint);
+  options.window_voxels = static_cast<float>(c.options.vote_window_voxels);
+  std::vector<Seed> seeds;
+  for (const auto& [from, to] : common_axes(c)) {
+    const auto more = vote_seeds_about_axis(c.source, c.target, c.matches, from, to, options);
+    seeds.insert(seeds.end(), more.begin(), more.end());
+  }
+  return seeds;
+}
+
+std::vector<Seed> column_votes(const GeneratorContext& c) {
+  constexpr std::size_t kMaxAxisPairs = 3;
+  auto axes = common_axes(c);
+  if (axes.size() > kMaxAxisPairs) axes.resize(kMaxAxisPairs);
+  std::vector<Seed> seeds;
+  for (const auto& [from, to] : axes) {
+    const auto more = vote_seeds_by_columns(c.source, c.target, from, to, {});
+    seeds.insert(seeds.end(), more.begin(), more.end());
+  }
   return seeds;
 }
 
@@ -35,7 +55,8 @@ std::vector<Seed> pair_votes(const GeneratorContext& c) { return vote_seeds_by_p
 }  // namespace
 
 std::span<const Generator> generators() {
-  static const std::array<Generator, 2> table{{{"axis_votes", axis_votes}, {"pair_votes", pair_votes}}};
+  static const std::array<Generator, 3> table{
+      {{"column_votes", column_votes, true}, {"axis_votes", axis_votes, false}, {"pair_votes", pair_votes, false}}};
   return table;
 }
 

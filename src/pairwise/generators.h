@@ -20,6 +20,7 @@ struct GeneratorContext {
 struct Generator {
   std::string_view name;
   std::vector<Seed> (*propose)(const GeneratorContext& context);
+  bool ranks;  ///< its seeds come with a score over whole scans; the others are scored around their regions
 };
 
 /// All generators, in the order they run.

@@ -28,7 +28,9 @@ float tolerance_m(const ScanModel& model, std::int32_t point) {
   return 0.22f * static_cast<float>(model.scan.voxel_m) + at_level;
 }
 
-Profile profile(const ScanModel& from, const ScanModel& to, const Transform& to_from, std::span<const std::uint32_t> sample) {
+// widened_m: added to the tolerance, for poses that are known to be that far off.
+Profile profile(const ScanModel& from, const ScanModel& to, const Transform& to_from,
+                std::span<const std::uint32_t> sample, float widened_m = 0) {
   constexpr float kMinFacing = 0.5f, kFreeToleranceVoxels = 1.5f;
   const Eigen::Matrix3f rotation = to_from.linear().cast<float>();
   const Eigen::Vector3f translation = to_from.translation().cast<float>();
@@ -46,7 +48,7 @@ Profile profile(const ScanModel& from, const ScanModel& to, const Transform& to_
     const float facing = n.dot(rotation * from.normals[sample[k]]);
     if (facing < -kMinFacing) ++against;
     if (facing < kMinFacing) continue;
-    const float ratio = n.dot(p - to.points[j]) / tolerance_m(to, j);
+    const float ratio = n.dot(p - to.points[j]) / (tolerance_m(to, j) + widened_m);
     out.support[k] = std::max(0.0f, 1 - ratio * ratio);
   }
   const double scale = sample.empty() ? 0.0 : 1.0 / static_cast<double>(sample.size());
@@ -55,11 +57,14 @@ Profile profile(const ScanModel& from, const ScanModel& to, const Transform& to_
   return out;
 }
 
-std::vector<float> rarity(const std::vector<Profile>& profiles, std::size_t n) {
+// `share`: of each profile, so that those of one basin sum to one.
+std::vector<float> rarity(const std::vector<Profile>& profiles, const std::vector<float>& share, std::size_t n) {
   std::vector<float> weight(n, 0);
-  for (const Profile& p : profiles)
-    for (std::size_t i = 0; i < n; ++i) weight[i] += p.support[i];
-  const float total = static_cast<float>(profiles.size());
+  float total = 0;
+  for (std::size_t k = 0; k < profiles.size(); ++k) {
+    total += share[k];
+    for (std::size_t i = 0; i < n; ++i) weight[i] += share[k] * profiles[k].support[i];
+  }
   for (float& w : weight) w = std::log((total + 1) / (std::max(w, 1.0f))) / std::log(total + 1);
   return weight;
 }
@@ -78,6 +83,13 @@ DirectedEvidence summary(const Profile& p, const std::vector<float>& weight) {
   return out;
 }
 
+// The smaller direction counts fully, since a small scan inside a large one explains itself anywhere.
+double combined_support(const Hypothesis& h) {
+  constexpr double kLarger = 0.25;
+  return std::min(h.source.rare_support, h.target.rare_support) +
+         kLarger * std::max(h.source.rare_support, h.target.rare_support);
+}
+
 // Of what lies in sight of the other station, how much contradicts it: at true poses 0.1-5 %, more in thinned scans.
 double free_space_factor(const Hypothesis& h) {
   constexpr double kDecay = 0.05;
@@ -85,7 +97,71 @@ double free_space_factor(const Hypothesis& h) {
   return std::exp(-0.5 * (share(h.source) + share(h.target)) / kDecay);
 }
 
+// The score of one pose alone, every point weighing the same.
+double score_alone(const ScanModel& source, const ScanModel& target, std::span<const std::uint32_t> from,
+                   std::span<const std::uint32_t> to, const Transform& target_from_source, float widened_m = 0) {
+  Hypothesis h;
+  h.source = summary(profile(source, target, target_from_source, from, widened_m), std::vector<float>(from.size(), 1.0f));
+  h.target = summary(profile(target, source, target_from_source.inverse(), to, widened_m),
+                     std::vector<float>(to.size(), 1.0f));
+  return combined_support(h) * free_space_factor(h);
+}
+
+// Mean of the source points that lie on the target's surface, and how far they reach from it.
+std::pair<Eigen::Vector3d, double> middle_of_overlap(const ScanModel& source, const ScanModel& target,
+                                                     std::span<const std::uint32_t> from, const Transform& t) {
+  const Profile p = profile(source, target, t, from);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double weight = 0, sq = 0;
+  for (std::size_t k = 0; k < from.size(); ++k)
+    sum += static_cast<double>(p.support[k]) * source.points[from[k]].cast<double>(), weight += static_cast<double>(p.support[k]);
+  if (!(weight > 0)) return {source.centroid.cast<double>(), static_cast<double>(source.extent_m)};
+  const Eigen::Vector3d middle = sum / weight;
+  for (std::size_t k = 0; k < from.size(); ++k)
+    sq += static_cast<double>(p.support[k]) * (source.points[from[k]].cast<double>() - middle).squaredNorm();
+  return {middle, std::max(std::sqrt(sq / weight), 5 * static_cast<double>(source.voxel_m))};
+}
+
 }  // namespace
+
+void climb(const ScanModel& source, const ScanModel& target, std::size_t max_points, double first_step_voxels,
+           Hypothesis& hypothesis) {
+  constexpr double kLastStepVoxels = 0.125;
+  constexpr int kMaxRounds = 12;
+  const auto from = even_sample(source, max_points), to = even_sample(target, max_points);
+  const auto [middle, reach] = middle_of_overlap(source, target, from, hypothesis.target_from_source);
+  const Transform start = hypothesis.target_from_source;
+  Transform best_pose = start;
+  double step = first_step_voxels;
+  double best = 0;
+  bool known = false;  // best, at the tolerance of this step
+  for (int round = 0; round < kMaxRounds && step >= kLastStepVoxels; ++round) {
+    const double step_m = step * static_cast<double>(source.voxel_m);
+    const auto widened_m = static_cast<float>(step_m / 2);  // a step must be able to reach what it is meant for
+    if (!known) best = score_alone(source, target, from, to, best_pose, widened_m), known = true;
+    bool moved = false;
+    for (int axis = 0; axis < 6; ++axis)
+      for (const double sign : {1.0, -1.0}) {
+        Transform d = Transform::Identity();  // in the source's frame, about the middle
+        if (axis < 3) {
+          d.translation()[axis] = sign * step_m;
+        } else {
+          const Eigen::Matrix3d turn = rotation_from_vector(Eigen::Vector3d::Unit(axis - 3) * (sign * step_m / reach));
+          d.linear() = turn;
+          d.translation() = middle - turn * middle;
+        }
+        const Transform tried = best_pose * d;
+        const double score = score_alone(source, target, from, to, tried, widened_m);
+        if (score <= best) continue;
+        best = score, best_pose = tried, moved = true;
+        break;  // the other way only if this one fails
+      }
+    if (!moved) step /= 2, known = false;
+  }
+  if (score_alone(source, target, from, to, best_pose) >= score_alone(source, target, from, to, start))
+    hypothesis.target_from_source = best_pose;
+  hypothesis.target_from_source = orthonormalised(hypothesis.target_from_source);
+}
 
 void polish(const ScanModel& source, const ScanModel& target, std::size_t max_points, int steps, Hypothesis& hypothesis) {
   const auto from = even_sample(source, max_points), to = even_sample(target, max_points);
@@ -127,6 +203,24 @@ void polish(const ScanModel& source, const ScanModel& target, std::size_t max_po
   hypothesis.target_from_source = orthonormalised(t);
 }
 
+void polish_unless_worse(const ScanModel& source, const ScanModel& target, std::size_t max_points, int steps,
+                         Hypothesis& hypothesis) {
+  constexpr std::size_t kScorePoints = 2000;
+  constexpr double kKept = 0.98;  // of the score: within what the sample of points makes of it
+  const auto from = even_sample(source, kScorePoints), to = even_sample(target, kScorePoints);
+  Hypothesis polished = hypothesis;
+  polish(source, target, max_points, steps, polished);
+  const double before = score_alone(source, target, from, to, hypothesis.target_from_source);
+  if (score_alone(source, target, from, to, polished.target_from_source) >= kKept * before) hypothesis = polished;
+}
+
+bool same_basin(const ScanModel& source, const Transform& a, const Transform& b) {
+  constexpr double kBasinVoxels = 6, kBasinRad = 0.09;  // what polishing the same answer leaves in rough or sparse scans
+  const Eigen::Vector3d middle = source.centroid.cast<double>();
+  if ((a * middle - b * middle).norm() > kBasinVoxels * source.scan.voxel_m) return false;
+  return rotation_angle_rad(a.linear().transpose() * b.linear()) < kBasinRad;
+}
+
 void keep_distinct(const ScanModel& source, double position_m, std::vector<Hypothesis>& hypotheses) {
   std::stable_sort(hypotheses.begin(), hypotheses.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
   const Eigen::Vector3d middle = source.centroid.cast<double>();
@@ -144,20 +238,31 @@ void keep_distinct(const ScanModel& source, double position_m, std::vector<Hypot
   hypotheses = std::move(kept);
 }
 
-void weigh(const ScanModel& source, const ScanModel& target, std::size_t max_points, std::vector<Hypothesis>& hypotheses) {
-  const auto from = even_sample(source, max_points), to = even_sample(target, max_points);
+void weigh(const ScanModel& source, const ScanModel& target, const Weighing& weighing,
+           std::vector<Hypothesis>& hypotheses) {
+  const auto from = even_sample(source, weighing.max_points), to = even_sample(target, weighing.max_points);
   std::vector<Profile> forward(hypotheses.size()), backward(hypotheses.size());
   parallel_for_index(hypotheses.size(), 4, [&](std::size_t k) {
     forward[k] = profile(source, target, hypotheses[k].target_from_source, from);
     backward[k] = profile(target, source, hypotheses[k].target_from_source.inverse(), to);
   });
-  const std::vector<float> from_weight = rarity(forward, from.size()), to_weight = rarity(backward, to.size());
+  std::vector<float> share(hypotheses.size(), 0.0f);
+  for (std::size_t k = 0; k < hypotheses.size(); ++k) {
+    float alike = 0;
+    for (const Hypothesis& h : hypotheses)
+      alike += same_basin(source, h.target_from_source, hypotheses[k].target_from_source);
+    share[k] = 1 / alike;
+  }
+  const auto weights = [&](const std::vector<Profile>& profiles, std::size_t n) {
+    return weighing.rarity ? rarity(profiles, share, n) : std::vector<float>(n, 1.0f);
+  };
+  const std::vector<float> from_weight = weights(forward, from.size()), to_weight = weights(backward, to.size());
   for (std::size_t k = 0; k < hypotheses.size(); ++k) {
     Hypothesis& h = hypotheses[k];
     h.source = summary(forward[k], from_weight);
     h.target = summary(backward[k], to_weight);
-    h.score = (std::min(h.source.rare_support, h.target.rare_support) +
-               0.25 * std::max(h.source.rare_support, h.target.rare_support)) * free_space_factor(h);
+    h.score = combined_support(h) *
+              (weighing.free_space ? free_space_factor(h) : 1.0);
   }
   std::stable_sort(hypotheses.begin(), hypotheses.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
 }

@@ -37,7 +37,10 @@ double probability_of(const PairEvidence& e) {
 
 void judge(const PairEvidence& e, const PairOptions& options, PairResult& result) {
   result.evidence = {{"score", e.score},
+                     {"near_score", e.near_score},
                      {"rival_score", e.rival_score},
+                     {"rival_voxels", e.rival_voxels},
+                     {"rival_deg", e.rival_deg},
                      {"support", e.support},
                      {"rare_support", e.rare_support},
                      {"contradiction", e.contradiction},

@@ -10,7 +10,10 @@ namespace isthmus {
 /// The terms the verdict is made of, in a fixed order.
 struct PairEvidence {
   double score = 0;            ///< of the best hypothesis, see weigh()
-  double rival_score = 0;      ///< of the best distinct other hypothesis, at least 0
+  double near_score = 0;       ///< of the next best pose in the same basin: how well the place is fixed
+  double rival_score = 0;      ///< of the best pose elsewhere, at least 0
+  double rival_voxels = 0;     ///< how far apart the two put the source's middle; 0 without a rival
+  double rival_deg = 0;        ///< and how differently they turn it
   double support = 0;          ///< the smaller direction
   double rare_support = 0;     ///< the smaller direction
   double contradiction = 0;    ///< the larger direction

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <fmt/format.h>
 
 #include "base/digest.h"
@@ -32,7 +33,7 @@ const config::OptionTable<PairOptions>& pair_options_table() {
       "pair",
       "Coarse registration of one pair of scans.",
       {
-          {"generators", &PairOptions::generators, "", 0, 0, {"axis_votes", "pair_votes"},
+          {"generators", &PairOptions::generators, "", 0, 0, {"axis_votes", "column_votes", "pair_votes"},
            "Where hypotheses come from: axis_votes = matches turned about a common axis of the scene; pair_votes = pairs of "
            "oriented matches, any orientation.",
            "docs/stages/overlap.md"},
@@ -41,7 +42,9 @@ const config::OptionTable<PairOptions>& pair_options_table() {
           {"vote_window_voxels", &PairOptions::vote_window_voxels, "voxels", 5, 200, {},
            "Keypoints this close to a region's centre vote for where the region lies.", "docs/stages/overlap.md"},
           {"max_seeds", &PairOptions::max_seeds, "", 1, 100000, {},
-           "Initial overlapped sub-regions that are grown.", "docs/stages/overlap.md"},
+           "Initial overlapped sub-regions from matches that are grown.", "docs/stages/overlap.md"},
+          {"max_ranked_seeds", &PairOptions::max_ranked_seeds, "", 1, 100000, {},
+           "Initial overlaps from columns that are grown.", "docs/stages/overlap.md"},
           {"max_hypotheses", &PairOptions::max_hypotheses, "", 1, 100000, {},
            "Grown overlaps that are polished and weighed against each other.", "docs/stages/overlap.md"},
           {"congruent_hypotheses", &PairOptions::congruent_hypotheses, "", 0, 1000, {},
@@ -57,6 +60,8 @@ const config::OptionTable<PairOptions>& pair_options_table() {
            "A link is accepted at or above this probability of being right.", "docs/stages/verdict.md"},
           {"ambiguous_probability", &PairOptions::ambiguous_probability, "", 0, 1, {},
            "Below it a pair is rejected; between the two it is ambiguous.", "docs/stages/verdict.md"},
+          {"without", &PairOptions::without, "", 0, 0, {"growth", "super4pcs", "fine", "rarity", "free_space"},
+           "Parts of the method left out, for experiments: what does each bring?", "docs/bench.md"},
       }};
   return table;
 }
@@ -115,10 +120,13 @@ std::vector<Hypothesis> congruent_hypotheses(const ScanModel& source, const Scan
   return out;
 }
 
-std::vector<Hypothesis> grown_hypotheses(const ScanModel& source, const ScanModel& target, const std::vector<Seed>& seeds) {
+std::vector<Hypothesis> grown_hypotheses(const ScanModel& source, const ScanModel& target, const std::vector<Seed>& seeds,
+                                         bool with_growth) {
+  GrowOptions options;
+  if (!with_growth) options.final_steps = 0;
   std::vector<Hypothesis> out(seeds.size());
   parallel_for_index(seeds.size(), 4, [&](std::size_t k) {
-    const GrownOverlap grown = grow(source, target, seeds[k], {});
+    const GrownOverlap grown = grow(source, target, seeds[k], options);
     out[k].target_from_source = grown.target_from_source;
     out[k].score = static_cast<double>(grown.score);
     out[k].generator = seeds[k].generator;
@@ -128,6 +136,19 @@ std::vector<Hypothesis> grown_hypotheses(const ScanModel& source, const ScanMode
 
 void polish_all(const ScanModel& source, const ScanModel& target, std::size_t points, int steps, std::vector<Hypothesis>& all) {
   parallel_for_index(all.size(), 2, [&](std::size_t k) { polish(source, target, points, steps, all[k]); });
+}
+
+void climb_best(const ScanModel& source, const ScanModel& target, std::vector<Hypothesis>& ranked) {
+  constexpr std::size_t kClimbed = 6, kClimbPoints = 700;
+  constexpr double kFirstStepVoxels = 1;
+  parallel_for_index(std::min(kClimbed, ranked.size()), 1,
+                     [&](std::size_t k) { climb(source, target, kClimbPoints, kFirstStepVoxels, ranked[k]); });
+}
+
+Transform transform_of(const Pose3f& pose) {
+  Transform t = Transform::Identity();
+  t.linear() = pose.rotation.cast<double>(), t.translation() = pose.translation.cast<double>();
+  return t;
 }
 
 std::vector<Transform> transforms_of(const std::vector<Hypothesis>& hypotheses) {
@@ -161,6 +182,139 @@ void fill_information(const ScanModel& source, const ScanModel& target, const Tr
   evidence.observability = stiffness[2] > 0 ? std::max(0.0, stiffness[0]) / stiffness[2] : 0;
 }
 
+// The next best pose of the best one's basin, and the best elsewhere. `ranked` is not empty.
+void note_rivals(const ScanModel& source, const std::vector<Hypothesis>& ranked, PairEvidence& evidence) {
+  const Transform& best = ranked.front().target_from_source;
+  bool elsewhere = false;
+  for (std::size_t k = 1; k < ranked.size(); ++k) {
+    const Transform& other = ranked[k].target_from_source;
+    if (same_basin(source, best, other)) {
+      evidence.near_score = std::max(evidence.near_score, ranked[k].score);
+      continue;
+    }
+    if (elsewhere) continue;
+    elsewhere = true;
+    evidence.rival_score = std::max(0.0, ranked[k].score);
+    evidence.rival_voxels = displacement_m(best, other, source.centroid.cast<double>()) / source.scan.voxel_m;
+    evidence.rival_deg = rotation_angle_rad(best.linear().transpose() * other.linear()) * 180 / std::numbers::pi;
+  }
+}
+
+// Seeds, growth and weighing of one pair, in rounds that share what was found before.
+class PairSearch {
+ public:
+  PairSearch(const ScanModel& source, const ScanModel& target, const PairOptions& options, Stopwatch& watch,
+             std::vector<std::pair<std::string, double>>& counts, PairTrace* trace)
+      : source_(source), target_(target), options_(options), watch_(watch), counts_(counts), trace_(trace) {}
+
+  /// Distinct seeds of the generators that rank their own (over whole scans) or of the others, best first.
+  std::vector<Seed> seeds_of(bool ranking) {
+    constexpr std::uint32_t kMatchesKept = 48;  // before the axis test; matches_per_keypoint after it
+    constexpr float kSeedDistanceVoxels = 3, kSeedAngleRad = 0.1f;
+    MatchTable matches;
+    if (!ranking) {
+      matches = match_descriptors(source_.features, target_.features, kMatchesKept);
+      watch_.lap("matching");
+    }
+    std::vector<Seed> seeds;
+    for (const Generator& generator : generators()) {
+      const auto& wanted = options_.generators;
+      if (generator.ranks != ranking || std::find(wanted.begin(), wanted.end(), generator.name) == wanted.end()) continue;
+      const auto more = generator.propose({source_, target_, matches, options_});
+      seeds.insert(seeds.end(), more.begin(), more.end());
+      watch_.lap(std::string(generator.name));
+    }
+    counts_.emplace_back(ranking ? "ranked_seeds" : "seeds", static_cast<double>(seeds.size()));
+    if (!ranking) score_seeds(source_, target_, {}, seeds);
+    const int most = ranking ? options_.max_ranked_seeds : options_.max_seeds;
+    seeds = best_distinct_seeds(source_, std::move(seeds), kSeedDistanceVoxels * source_.voxel_m, kSeedAngleRad,
+                                static_cast<std::size_t>(most));
+    watch_.lap("seeds");
+    if (trace_)
+      for (const Seed& s : seeds) trace_->seeds.push_back(transform_of(s.target_from_source(source_)));
+    return seeds;
+  }
+
+  /// Grows the seeds, polishes what is new and weighs it against what is there.
+  void add(const std::vector<Seed>& seeds, std::vector<Hypothesis>& hypotheses) {
+    const double voxel = source_.scan.voxel_m;
+    std::vector<Hypothesis> grown = grown_hypotheses(source_, target_, seeds, !options_.leaves_out("growth"));
+    keep_distinct(source_, voxel, grown);
+    if (grown.size() > static_cast<std::size_t>(options_.max_hypotheses))
+      grown.resize(static_cast<std::size_t>(options_.max_hypotheses));
+    if (trace_)
+      for (const Hypothesis& h : grown) trace_->grown.push_back(h.target_from_source);
+    watch_.lap("growth");
+    polish_all(source_, target_, kPolishPoints, kPolishSteps, grown);
+    hypotheses.insert(hypotheses.end(), grown.begin(), grown.end());
+    rank(source_, target_, hypotheses);
+    climb_best(source_, target_, hypotheses);
+    rank(source_, target_, hypotheses);
+    if (trace_) trace_->polished = transforms_of(hypotheses);
+    watch_.lap("weighing");
+  }
+
+  /// Super4PCS on the overlaps of the best few.
+  void add_congruent(std::uint64_t seed, std::vector<Hypothesis>& hypotheses) {
+    const std::size_t count = std::min(hypotheses.size(), static_cast<std::size_t>(options_.congruent_hypotheses));
+    if (count == 0) return;
+    std::vector<std::vector<Hypothesis>> found(count);
+    parallel_for_index(count, 1, [&](std::size_t k) {
+      found[k] = congruent_hypotheses(source_, target_, hypotheses[k], options_, seed + k);
+    });
+    std::vector<Hypothesis> again;
+    for (auto& f : found) again.insert(again.end(), f.begin(), f.end());
+    polish_all(source_, target_, kPolishPoints, kPolishSteps, again);
+    hypotheses.insert(hypotheses.end(), again.begin(), again.end());
+    rank(source_, target_, hypotheses);
+    counts_.emplace_back("congruent", static_cast<double>(again.size()));
+    if (trace_) trace_->congruent = transforms_of(hypotheses);
+    watch_.lap("congruent sets");
+  }
+
+  /// The best few again on the finer sampling, where only what is right still fits.
+  void settle(const ScanModel& fine_source, const ScanModel& fine_target, std::vector<Hypothesis>& hypotheses) {
+    if (hypotheses.size() > static_cast<std::size_t>(options_.fine_hypotheses))
+      hypotheses.resize(static_cast<std::size_t>(options_.fine_hypotheses));
+    polish_all(fine_source, fine_target, 2 * kPolishPoints, kPolishSteps, hypotheses);
+    rank(fine_source, fine_target, hypotheses);
+    climb_best(fine_source, fine_target, hypotheses);
+    rank(fine_source, fine_target, hypotheses);
+    if (trace_) trace_->fine = transforms_of(hypotheses);
+    watch_.lap("fine weighing");
+  }
+
+ private:
+  static constexpr std::size_t kPolishPoints = 1200;
+  static constexpr int kPolishSteps = 6;
+
+  // Weighed, twins dropped, and weighed again: the share that supports a point is among distinct poses.
+  void rank(const ScanModel& source, const ScanModel& target, std::vector<Hypothesis>& hypotheses) const {
+    const Weighing weighing{static_cast<std::size_t>(options_.score_points), !options_.leaves_out("rarity"),
+                            !options_.leaves_out("free_space")};
+    weigh(source, target, weighing, hypotheses);
+    const std::size_t before = hypotheses.size();
+    keep_distinct(source, 2 * source.scan.voxel_m, hypotheses);
+    if (hypotheses.size() != before) weigh(source, target, weighing, hypotheses);
+  }
+
+  const ScanModel& source_;
+  const ScanModel& target_;
+  const PairOptions& options_;
+  Stopwatch& watch_;
+  std::vector<std::pair<std::string, double>>& counts_;
+  PairTrace* trace_;
+};
+
+// Whether the best pose leaves no need to look further. `ranked` by weigh().
+bool decisive(const ScanModel& source, const std::vector<Hypothesis>& ranked) {
+  constexpr double kMargin = 3, kScore = 0.08;
+  if (ranked.empty() || ranked.front().score < kScore) return false;
+  PairEvidence evidence;
+  note_rivals(source, ranked, evidence);
+  return ranked.front().score > kMargin * evidence.rival_score;
+}
+
 PairResult rejected(PairResult result, std::string reason) {
   result.verdict = Verdict::rejected;
   result.reason = std::move(reason);
@@ -187,88 +341,30 @@ PairResult register_pair(const ScanProduct& source_product, const ScanProduct& t
   Stopwatch watch(result.seconds_by_stage);
   const ScanModel source(source_product.sampled, source_product.features, source_product.regions, ModelLevel::coarse);
   const ScanModel target(target_product.sampled, target_product.features, target_product.regions, ModelLevel::coarse);
-  const double voxel = source_product.sampled.voxel_m;
   watch.lap("lookups");
 
-  constexpr std::uint32_t kMatchesKept = 48;  // before the axis test; matches_per_keypoint after it
-  const MatchTable matches = match_descriptors(source.features, target.features, kMatchesKept);
-  watch.lap("matching");
-  std::vector<Seed> seeds;
-  for (const Generator& generator : generators()) {
-    if (std::find(options.generators.begin(), options.generators.end(), generator.name) == options.generators.end()) continue;
-    const auto more = generator.propose({source, target, matches, options});
-    seeds.insert(seeds.end(), more.begin(), more.end());
-  }
-  result.counts.emplace_back("seeds", static_cast<double>(seeds.size()));
-  watch.lap("votes");
-  score_seeds(source, target, {}, seeds);
-  constexpr float kSeedDistanceVoxels = 3, kSeedAngleRad = 0.1f;
-  seeds = best_distinct_seeds(source, std::move(seeds), kSeedDistanceVoxels * source.voxel_m, kSeedAngleRad,
-                              static_cast<std::size_t>(options.max_seeds));
-  watch.lap("seeds");
-  if (trace)
-    for (const Seed& s : seeds) {
-      Transform t = Transform::Identity();
-      const Pose3f pose = s.target_from_source(source);
-      t.linear() = pose.rotation.cast<double>(), t.translation() = pose.translation.cast<double>();
-      trace->seeds.push_back(t);
-    }
-
-  std::vector<Hypothesis> hypotheses = grown_hypotheses(source, target, seeds);
-  keep_distinct(source, voxel, hypotheses);
-  if (hypotheses.size() > static_cast<std::size_t>(options.max_hypotheses)) hypotheses.resize(static_cast<std::size_t>(options.max_hypotheses));
-  if (trace) trace->grown = transforms_of(hypotheses);
+  PairSearch search(source, target, options, watch, result.counts, trace);
+  std::vector<Hypothesis> hypotheses;
   for (const Transform& prior : priors) {
     Hypothesis h;
     h.target_from_source = prior;
     h.generator = "prior";
     hypotheses.push_back(h);
   }
+  // What is found by whole plans first; matching descriptors only when that does not settle the pair.
+  search.add(search.seeds_of(true), hypotheses);
+  if (!decisive(source, hypotheses)) search.add(search.seeds_of(false), hypotheses);
   result.counts.emplace_back("hypotheses", static_cast<double>(hypotheses.size()));
-  watch.lap("growth");
   if (hypotheses.empty()) return rejected(std::move(result), "no hypothesis: the scans share no matching regions");
+  if (!options.leaves_out("super4pcs")) search.add_congruent(pair_seed(source_product, target_product), hypotheses);
 
-  constexpr std::size_t kPolishPoints = 1200;
-  constexpr int kPolishSteps = 6;
-  polish_all(source, target, kPolishPoints, kPolishSteps, hypotheses);
-  const auto score_points = static_cast<std::size_t>(options.score_points);
-  weigh(source, target, score_points, hypotheses);
-  keep_distinct(source, 2 * voxel, hypotheses);
-  weigh(source, target, score_points, hypotheses);
-  if (trace) trace->polished = transforms_of(hypotheses);
-  watch.lap("weighing");
-
-  const std::size_t num_congruent = std::min(hypotheses.size(), static_cast<std::size_t>(options.congruent_hypotheses));
-  if (num_congruent > 0) {
-    const std::uint64_t seed = pair_seed(source_product, target_product);
-    std::vector<std::vector<Hypothesis>> found(num_congruent);
-    parallel_for_index(num_congruent, 1, [&](std::size_t k) {
-      found[k] = congruent_hypotheses(source, target, hypotheses[k], options, seed + k);
-    });
-    std::vector<Hypothesis> again;
-    for (auto& f : found) again.insert(again.end(), f.begin(), f.end());
-    polish_all(source, target, kPolishPoints, kPolishSteps, again);
-    hypotheses.insert(hypotheses.end(), again.begin(), again.end());
-    weigh(source, target, score_points, hypotheses);
-    keep_distinct(source, 2 * voxel, hypotheses);
-    weigh(source, target, score_points, hypotheses);
-    result.counts.emplace_back("congruent", static_cast<double>(again.size()));
-  }
-  if (trace) trace->congruent = transforms_of(hypotheses);
-  watch.lap("congruent sets");
-
-  // The best few again on the finer sampling, where only what is right still fits.
-  const ScanModel fine_source(source_product.sampled, source_product.features, source_product.regions, ModelLevel::fine);
-  const ScanModel fine_target(target_product.sampled, target_product.features, target_product.regions, ModelLevel::fine);
-  if (hypotheses.size() > static_cast<std::size_t>(options.fine_hypotheses)) hypotheses.resize(static_cast<std::size_t>(options.fine_hypotheses));
-  polish_all(fine_source, fine_target, 2 * kPolishPoints, kPolishSteps, hypotheses);
-  keep_distinct(source, 2 * voxel, hypotheses);
-  weigh(fine_source, fine_target, score_points, hypotheses);
-  if (trace) trace->fine = transforms_of(hypotheses);
-  watch.lap("fine weighing");
+  const ModelLevel level = options.leaves_out("fine") ? ModelLevel::coarse : ModelLevel::fine;
+  const ScanModel fine_source(source_product.sampled, source_product.features, source_product.regions, level);
+  const ScanModel fine_target(target_product.sampled, target_product.features, target_product.regions, level);
+  search.settle(fine_source, fine_target, hypotheses);
   Hypothesis best = hypotheses.front();
   constexpr std::size_t kFinalPoints = 20000;
-  polish(fine_source, fine_target, kFinalPoints, 5, best);
+  polish_unless_worse(fine_source, fine_target, kFinalPoints, 5, best);
   const Pose3f pose{best.target_from_source.linear().cast<float>(), best.target_from_source.translation().cast<float>()};
   const DirectedScore forward = score_direction(source, target, pose, {}, 1, false);
   const DirectedScore backward = score_direction(target, source, pose.inverse(), {}, 1, false);
@@ -278,7 +374,7 @@ PairResult register_pair(const ScanProduct& source_product, const ScanProduct& t
   result.overlap = std::min(result.overlap_of_source, result.overlap_of_target);
   PairEvidence evidence;
   evidence.score = best.score;
-  evidence.rival_score = hypotheses.size() > 1 ? std::max(0.0, hypotheses[1].score) : 0.0;
+  note_rivals(source, hypotheses, evidence);
   evidence.support = std::min(best.source.support, best.target.support);
   evidence.rare_support = std::min(best.source.rare_support, best.target.rare_support);
   evidence.contradiction = std::max(static_cast<double>(forward.contradiction), static_cast<double>(backward.contradiction));

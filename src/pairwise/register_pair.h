@@ -1,7 +1,9 @@
 // One pair from features to verdict.
 #pragma once
 
+#include <algorithm>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "config/option_table.h"
@@ -22,17 +24,23 @@ struct ScanProduct {
 };
 
 struct PairOptions {
-  std::vector<std::string> generators{"axis_votes", "pair_votes"};
+  std::vector<std::string> generators{"axis_votes", "column_votes", "pair_votes"};
   int matches_per_keypoint = 15;
   double vote_window_voxels = 16;
   int max_seeds = 300;
+  int max_ranked_seeds = 100;
   int max_hypotheses = 150;
   int congruent_hypotheses = 4;
-  int fine_hypotheses = 50;
+  int fine_hypotheses = 40;
   int congruent_points = 600;
   int score_points = 2000;
   double accept_probability = 0.97;
   double ambiguous_probability = 0.05;
+  std::vector<std::string> without;
+
+  [[nodiscard]] bool leaves_out(std::string_view part) const {
+    return std::find(without.begin(), without.end(), part) != without.end();
+  }
 };
 const config::OptionTable<PairOptions>& pair_options_table();
 

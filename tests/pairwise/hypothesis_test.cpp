@@ -72,7 +72,7 @@ TEST(Weigh, TheTruthComesFirst) {
   for (const std::uint64_t hall : {1u, 2u}) {
     const HallPair pair({0, 0, 0.4}, hall);
     auto all = truth_and_wrong_poses(pair, 40);
-    weigh(pair.source, pair.target, 2000, all);
+    weigh(pair.source, pair.target, {2000}, all);
     EXPECT_LT(displacement_m(all[0].target_from_source, pair.data.target_from_source, {0, 0, 0}), 1e-9);
     EXPECT_TRUE(std::is_sorted(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.score > b.score; }));
     for (const Hypothesis& h : all)
@@ -85,22 +85,72 @@ TEST(Weigh, TheTruthComesFirst) {
   }
 }
 
-// As in document retrieval: a word in every document says nothing.
+// As in document retrieval: a word in every document says nothing. Every wrong pose keeps the floor.
 TEST(Weigh, WhatEveryHypothesisExplainsWeighsLittle) {
   const HallPair pair;
-  auto alone = truth_and_wrong_poses(pair, 30);
-  std::vector<Hypothesis> crowd(31, at(pair.data.target_from_source));
-  weigh(pair.source, pair.target, 2000, alone);
-  weigh(pair.source, pair.target, 2000, crowd);
+  std::vector<Hypothesis> alone{at(pair.data.target_from_source)};
+  auto crowd = truth_and_wrong_poses(pair, 30);
+  weigh(pair.source, pair.target, {2000}, alone);
+  weigh(pair.source, pair.target, {2000}, crowd);
   EXPECT_NEAR(alone[0].source.support, crowd[0].source.support, 1e-9) << "support itself does not depend on the others";
-  EXPECT_LT(crowd[0].source.rare_support, 0.5 * alone[0].source.rare_support);
+  EXPECT_NEAR(alone[0].source.rare_support, alone[0].source.support, 1e-9);
+  EXPECT_LT(crowd[0].source.rare_support, 0.9 * alone[0].source.rare_support);
+}
+
+TEST(Weigh, PosesOfOneBasinCountAsOneHypothesis) {
+  const HallPair pair;
+  const Transform& truth = pair.data.target_from_source;
+  EXPECT_TRUE(same_basin(pair.source, truth, pose_of({0.3, 0, 0}, {0, 0, 0.02}) * truth));
+  EXPECT_FALSE(same_basin(pair.source, truth, pose_of({2, 0, 0}) * truth));
+  EXPECT_FALSE(same_basin(pair.source, truth, truth * pose_of({0, 0, 0}, {0, 0, 0.3})));
+  std::vector<Hypothesis> alone{at(truth)}, crowd(31, at(truth));
+  weigh(pair.source, pair.target, {2000}, alone);
+  weigh(pair.source, pair.target, {2000}, crowd);
+  EXPECT_NEAR(crowd[0].source.rare_support, alone[0].source.rare_support, 1e-3);
+}
+
+double score_of(const HallPair& pair, const Transform& t) {
+  std::vector<Hypothesis> one{at(t)};
+  weigh(pair.source, pair.target, {1000}, one);
+  return one[0].score;
+}
+
+TEST(Climb, ReachesTheTruthFromAVoxelAwayAndNeverEndsLower) {
+  const HallPair pair;
+  const Transform& truth = pair.data.target_from_source;
+  const double voxel = pair.source.scan.voxel_m;
+  for (const Transform& start : {pose_of({0.8 * voxel, 0, 0}) * truth, pose_of({0, -voxel, 0.4 * voxel}) * truth}) {
+    Hypothesis h = at(start);
+    climb(pair.source, pair.target, 1000, 1, h);
+    EXPECT_LT(displacement_m(h.target_from_source, truth, pair.source.centroid.cast<double>()), 0.4 * voxel);
+    EXPECT_GT(score_of(pair, h.target_from_source), score_of(pair, start));
+  }
+  Rng rng(4);
+  for (int k = 0; k < 10; ++k) {
+    const Transform start = pose_of({rng.uniform(-3, 3), rng.uniform(-3, 3), 0}, {0, 0, rng.uniform(-3, 3)}) * truth;
+    Hypothesis h = at(start);
+    climb(pair.source, pair.target, 1000, 1, h);
+    EXPECT_GE(score_of(pair, h.target_from_source), score_of(pair, start));
+  }
+}
+
+TEST(Polish, UnlessWorseKeepsWhatItHad) {
+  const HallPair pair;
+  Rng rng(7);
+  for (int k = 0; k < 10; ++k) {
+    const Transform start = pose_of({rng.uniform(-1, 1), rng.uniform(-1, 1), 0}, {0, 0, rng.uniform(-0.2, 0.2)}) *
+                            pair.data.target_from_source;
+    Hypothesis h = at(start);
+    polish_unless_worse(pair.source, pair.target, 2000, 5, h);
+    EXPECT_GE(score_of(pair, h.target_from_source), 0.9 * score_of(pair, start)) << "but for the sample of points";
+  }
 }
 
 TEST(Weigh, TheSameForAnyNumberOfThreads) {
   const HallPair pair;
   const auto scores = [&] {
     auto all = truth_and_wrong_poses(pair, 20);
-    weigh(pair.source, pair.target, 1000, all);
+    weigh(pair.source, pair.target, {1000}, all);
     std::vector<double> out;
     for (const Hypothesis& h : all) out.insert(out.end(), {h.score, h.source.rare_support, h.target.contradiction});
     return out;

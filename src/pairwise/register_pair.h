@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "config/option_table.h"
@@ -30,6 +31,7 @@ struct PairOptions {
   int congruent_hypotheses = 4;
   int fine_hypotheses = 50;
   int congruent_points = 600;
+  std::string congruent_bases = "area";
   int score_points = 2000;
   double accept_probability = 0.97;
   double ambiguous_probability = 0.05;

@@ -13,7 +13,7 @@
 namespace isthmus {
 namespace {
 
-constexpr double kSmallestRegion = 0.25;  // of the wanted size: too few matches to tell a place
+constexpr double kSmallestRegion = 0.5;  // of the wanted size: below, joined to another it comes nearer to it
 
 // The distance that few neighbours lie beyond: longer ties lead to other things.
 float near_limit_sq(const NearestPoints& nearest) {

@@ -64,7 +64,32 @@ struct Patches {
   std::vector<Eigen::Vector3f> normals;       // of each patch
 };
 
-// The flattest free point starts a patch, which takes its neighbours as long as they lie on its plane and face its way.
+// A patch from a start: takes free neighbours as long as they lie on its plane and face its way.
+struct PatchGrowth {
+  const SampledScan& scan;
+  const SurfaceGraph& graph;
+  float min_cosine, distance_m;
+  std::vector<std::uint32_t> members = {};
+
+  /// Marks the members with `name`; returns the normal of the plane.
+  Eigen::Vector3f from(std::uint32_t start, std::uint32_t name, std::vector<std::uint32_t>& patch_of_point) {
+    GrowingPlane plane(scan.points[start], scan.normals[start]);
+    members.assign(1, start);
+    patch_of_point[start] = name;
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      plane.add(scan.points[members[k]]);
+      for (const std::uint32_t j : graph.around(members[k])) {
+        if (patch_of_point[j] != kNoGroup || scan.variation[j] > kFlatVariation) continue;
+        if (!plane.holds(scan.points[j], scan.normals[j], min_cosine, distance_m)) continue;
+        patch_of_point[j] = name;
+        members.push_back(j);
+      }
+    }
+    return plane.normal();
+  }
+};
+
+// The flattest free point starts a patch, until none is left that is flat.
 Patches planar_patches(const SampledScan& scan, const SurfaceGraph& graph, const RegionOptions& options) {
   const auto min_cosine = static_cast<float>(std::cos(options.planes_angle_deg * std::numbers::pi / 180));
   const auto distance_m = static_cast<float>(options.planes_distance_voxels * scan.voxel_m);
@@ -72,27 +97,16 @@ Patches planar_patches(const SampledScan& scan, const SurfaceGraph& graph, const
   std::iota(order.begin(), order.end(), 0U);
   std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return scan.variation[i]; });
   Patches patches{std::vector<std::uint32_t>(scan.points.size(), kNoGroup), {}};
-  std::vector<std::uint32_t> members;
+  PatchGrowth growth{scan, graph, min_cosine, distance_m};
   for (const std::uint32_t start : order) {
     if (scan.variation[start] > kFlatVariation) break;
     if (patches.patch_of_point[start] != kNoGroup) continue;
     const auto name = static_cast<std::uint32_t>(patches.normals.size());
-    GrowingPlane plane(scan.points[start], scan.normals[start]);
-    members.assign(1, start);
-    patches.patch_of_point[start] = name;
-    for (std::size_t k = 0; k < members.size(); ++k) {
-      plane.add(scan.points[members[k]]);
-      for (const std::uint32_t j : graph.around(members[k])) {
-        if (patches.patch_of_point[j] != kNoGroup || scan.variation[j] > kFlatVariation) continue;
-        if (!plane.holds(scan.points[j], scan.normals[j], min_cosine, distance_m)) continue;
-        patches.patch_of_point[j] = name;
-        members.push_back(j);
-      }
-    }
-    if (members.size() >= kSmallestPatch)
-      patches.normals.push_back(plane.normal());
+    const Eigen::Vector3f normal = growth.from(start, name, patches.patch_of_point);
+    if (growth.members.size() >= kSmallestPatch)
+      patches.normals.push_back(normal);
     else
-      for (const std::uint32_t i : members) patches.patch_of_point[i] = kNoGroup;
+      for (const std::uint32_t i : growth.members) patches.patch_of_point[i] = kNoGroup;
   }
   return patches;
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace isthmus::congruent {
 namespace {
@@ -56,13 +57,28 @@ bool side_fits(const LocalCloud& cloud, std::uint32_t i, std::uint32_t j, double
   return side <= width_m && side >= kShortestSide * width_m;
 }
 
+// The points that corners are drawn from: all, or some.
+class Corners {
+ public:
+  explicit Corners(std::size_t all) : size_(all) {}
+  explicit Corners(std::span<const std::uint32_t> some) : size_(some.size()), some_(some) {}
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] std::uint32_t operator[](std::size_t k) const {
+    return some_.empty() ? static_cast<std::uint32_t>(k) : some_[k];
+  }
+
+ private:
+  std::size_t size_;
+  std::span<const std::uint32_t> some_;
+};
+
 struct Triangle {
   std::uint32_t a = 0, b = 0, c = 0;
   double worth = 0;
 };
 
-Triangle draw_triangle(const LocalCloud& cloud, double width_m, Rng& rng) {
-  const auto draw = [&] { return static_cast<std::uint32_t>(rng.below(cloud.points.size())); };
+Triangle draw_triangle(const LocalCloud& cloud, const Corners& corners, double width_m, Rng& rng) {
+  const auto draw = [&] { return corners[rng.below(corners.size())]; };
   Triangle best{.a = draw()};
   for (int i = 0; i < kTriangleDraws; ++i) {
     const std::uint32_t b = draw(), c = draw();
@@ -76,16 +92,17 @@ Triangle draw_triangle(const LocalCloud& cloud, double width_m, Rng& rng) {
   return best;
 }
 
-// The best fourth corner to a triangle; looks at all points, or at an evenly spaced share of a large cloud.
-std::optional<Base> with_fourth_corner(const LocalCloud& cloud, const Triangle& t, const BaseWish& wish, Rng& rng) {
+// The best fourth corner to a triangle; looks at all corners, or at an evenly spaced share of many.
+std::optional<Base> with_fourth_corner(const LocalCloud& cloud, const Corners& corners, const Triangle& t,
+                                       const BaseWish& wish, Rng& rng) {
   const Eigen::Vector3f origin = cloud.points[t.a];
   const Eigen::Vector3f normal = (cloud.points[t.b] - origin).cross(cloud.points[t.c] - origin).normalized();
-  const std::size_t step = 1 + (cloud.points.size() - 1) / kFourthDraws;
+  const std::size_t step = 1 + (corners.size() - 1) / kFourthDraws;
   std::optional<Base> best;
   double best_worth = 0;
-  for (std::size_t i = rng.below(step); i < cloud.points.size(); i += step) {
-    if (std::abs(static_cast<double>(normal.dot(cloud.points[i] - origin))) > 2 * wish.coplanarity_m) continue;
-    const auto d = static_cast<std::uint32_t>(i);
+  for (std::size_t k = rng.below(step); k < corners.size(); k += step) {
+    const std::uint32_t d = corners[k];
+    if (std::abs(static_cast<double>(normal.dot(cloud.points[d] - origin))) > 2 * wish.coplanarity_m) continue;
     if (!side_fits(cloud, t.a, d, wish.width_m) || !side_fits(cloud, t.b, d, wish.width_m) ||
         !side_fits(cloud, t.c, d, wish.width_m))
       continue;
@@ -95,6 +112,15 @@ std::optional<Base> with_fourth_corner(const LocalCloud& cloud, const Triangle& 
     if (worth > best_worth) best = base, best_worth = worth;
   }
   return best;
+}
+
+std::optional<Base> drawn_from(const LocalCloud& source, const Corners& corners, const BaseWish& wish, Rng& rng) {
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const Triangle triangle = draw_triangle(source, corners, wish.width_m, rng);
+    if (!(triangle.worth > 0)) continue;
+    if (const auto base = with_fourth_corner(source, corners, triangle, wish, rng)) return base;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -110,12 +136,9 @@ std::optional<Base> base_of(std::span<const Eigen::Vector3f> points, const Quad&
 
 std::optional<Base> select_base(const LocalCloud& source, const BaseWish& wish, Rng& rng) {
   if (source.points.size() < 4 || !(wish.width_m > 0)) return std::nullopt;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    const Triangle triangle = draw_triangle(source, wish.width_m, rng);
-    if (!(triangle.worth > 0)) continue;
-    if (const auto base = with_fourth_corner(source, triangle, wish, rng)) return base;
-  }
-  return std::nullopt;
+  if (wish.at_boundary && source.boundary.size() >= 4)
+    if (const auto base = drawn_from(source, Corners(source.boundary), wish, rng)) return base;
+  return drawn_from(source, Corners(source.points.size()), wish, rng);
 }
 
 }  // namespace isthmus::congruent

@@ -33,11 +33,13 @@ std::optional<Base> base_of(std::span<const Eigen::Vector3f> points, const std::
 struct BaseWish {
   double width_m = 0;        ///< no side or diagonal longer than this; as long as that allows
   double coplanarity_m = 0;  ///< largest gap between the diagonals
+  bool at_boundary = false;  ///< corners at the boundary of the overlap where these make a base, else anywhere
 };
 
 /// Draws a wide base: large in area and, where the cloud has normals, on surfaces facing different ways, for four
 /// points of one wall have congruent sets all over that wall (this preference is ours). The lot decides by indices
 /// only: moving the cloud does not change the choice but for rounding. Nothing when the cloud holds no such base.
+/// Bases at the boundary after Liu et al. (reference 30 of the paper this program follows; known from there only).
 std::optional<Base> select_base(const LocalCloud& source, const BaseWish& wish, Rng& rng);
 
 }  // namespace isthmus::congruent

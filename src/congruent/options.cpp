@@ -96,6 +96,16 @@ const config::OptionTable<CongruentOptions>& congruent_options_table() {
            .choices = {},
            .help = "Point-to-plane steps on each transform returned.",
            .source = "four points fix a pose to a tolerance over the base's width; ten steps reach the sampling noise"},
+          {.key = "bases",
+           .member = &O::bases,
+           .unit = "",
+           .min = 0,
+           .max = 0,
+           .choices = {"area", "boundary"},
+           .help =
+               "Where corners of bases come from: area = anywhere in the overlap; boundary = from its boundary where "
+               "that is known and holds a base, else anywhere.",
+           .source = "docs/stages/congruent.md"},
           {.key = "base_width",
            .member = &O::base_width,
            .unit = "",

@@ -1,6 +1,8 @@
 // What a surveyor may turn in the congruent sets stage.
 #pragma once
 
+#include <string>
+
 #include "config/option_table.h"
 
 namespace isthmus {
@@ -17,6 +19,7 @@ struct CongruentOptions {
   int max_scored = 50;               ///< transforms of one base scored by all samples: the best by a first look
   int max_transforms = 10;           ///< distinct transforms returned
   int refine_steps = 10;             ///< point-to-plane steps on each transform returned; 0 = none
+  std::string bases = "area";        ///< where corners of bases come from: area or boundary
   double base_width = 0.7;           ///< longest side of a base, share of the overlap's diameter
   double stop_score = 0.95;          ///< stop after the batch of trials that reached this score
   int stop_votes = 4;                ///< stop when the bases of this many trials led to the best transform; 0 = never

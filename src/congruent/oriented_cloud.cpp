@@ -58,6 +58,8 @@ LocalCloud recentred(const OrientedCloud& cloud, bool use_normals) {
   if (kept.empty()) return local;
   local.centre /= static_cast<double>(kept.size());
   for (const std::size_t i : kept) {
+    if (!cloud.at_boundary.empty() && cloud.at_boundary[i] != 0)
+      local.boundary.push_back(static_cast<std::uint32_t>(local.points.size()));
     local.points.push_back((cloud.points[i].cast<double>() - local.centre).cast<float>());
     if (use_normals) local.normals.push_back(cloud.normals[i].normalized());
   }

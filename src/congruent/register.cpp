@@ -32,6 +32,9 @@ constexpr double kMostTolerances = 5e5;     // diameter in tolerances that the h
 
 // What makes a cloud unusable, by its name; empty if nothing does.
 std::string objection(const char* name, const OrientedCloud& cloud, bool use_normals) {
+  if (!cloud.at_boundary.empty() && cloud.at_boundary.size() != cloud.points.size())
+    return fmt::format("{} has {} points but {} marks of the boundary; give as many or none", name, cloud.points.size(),
+                       cloud.at_boundary.size());
   if (!use_normals || cloud.normals.size() == cloud.points.size()) return {};
   return fmt::format("{} has {} points but {} normals; give as many or set use_normals to false", name,
                      cloud.points.size(), cloud.normals.size());
@@ -205,7 +208,8 @@ CongruentResult register_congruent(const OrientedCloud& source_cloud, const Orie
                              .options = options,
                              .tolerance_m = tolerance_m,
                              .wish = {.width_m = options.base_width * overlap * source.diameter_m,
-                                      .coplanarity_m = kCoplanarTolerances * tolerance_m},
+                                      .coplanarity_m = kCoplanarTolerances * tolerance_m,
+                                      .at_boundary = options.bases == "boundary"},
                              .distinct_m = kDistinctTolerances * tolerance_m,
                              .num_kept = static_cast<std::size_t>(options.max_transforms + kSpareTransforms)};
 

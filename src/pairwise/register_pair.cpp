@@ -15,6 +15,7 @@
 #include "pairwise/judge.h"
 #include "regions/align.h"
 #include "regions/grow.h"
+#include "regions/overlap_boundary.h"
 
 namespace isthmus {
 
@@ -54,6 +55,10 @@ const config::OptionTable<PairOptions>& pair_options_table() {
            "Best hypotheses that are aligned and weighed again on the finer sampling.", "docs/stages/verdict.md"},
           {"congruent_points", &PairOptions::congruent_points, "", 50, 100000, {},
            "Points of each grown overlap given to Super4PCS.", "docs/stages/congruent.md"},
+          {"congruent_bases", &PairOptions::congruent_bases, "", 0, 0, {"area", "boundary"},
+           "Where Super4PCS takes the corners of its bases: area = anywhere in the grown overlap; boundary = from its "
+           "boundary where that holds a base.",
+           "docs/stages/congruent.md"},
           {"score_points", &PairOptions::score_points, "", 100, 1000000, {},
            "Points of each scan that hypotheses are scored on.", "docs/stages/verdict.md"},
           {"accept_probability", &PairOptions::accept_probability, "", 0, 1, {},
@@ -86,7 +91,8 @@ std::vector<std::uint32_t> overlap_points(const ScanModel& from, const ScanModel
 
 struct OverlapCloud {
   std::vector<Eigen::Vector3f> points, normals;
-  [[nodiscard]] OrientedCloud view() const { return {points, normals}; }
+  std::vector<std::uint8_t> at_boundary;
+  [[nodiscard]] OrientedCloud view() const { return {points, normals, at_boundary}; }
 };
 
 OverlapCloud gathered(const ScanModel& model, std::span<const std::uint32_t> indices) {
@@ -95,17 +101,30 @@ OverlapCloud gathered(const ScanModel& model, std::span<const std::uint32_t> ind
   return cloud;
 }
 
+// Which of `sample` lie where the overlap ends under the hypothesis.
+std::vector<std::uint8_t> boundary_marks(const ScanModel& from, const ScanModel& to, const Transform& to_from,
+                                         std::span<const std::uint32_t> sample) {
+  constexpr float kReachVoxels = 2;  // a dozen neighbours on a surface
+  std::vector<std::uint8_t> inside(from.points.size(), 0);
+  for (const std::uint32_t i : overlap_points(from, to, to_from, from.points.size())) inside[i] = 1;
+  return at_overlap_boundary(from.points, inside, sample, kReachVoxels * from.voxel_m);
+}
+
 // Super4PCS on the grown overlap of one hypothesis only.
 std::vector<Hypothesis> congruent_hypotheses(const ScanModel& source, const ScanModel& target, const Hypothesis& grown,
                                              const PairOptions& options, std::uint64_t seed) {
   constexpr double kMaxRotationRad = 0.14, kMaxTranslationVoxels = 8;  // what growth may be wrong by
   constexpr int kTrials = 16, kKept = 2;
   const auto points = static_cast<std::size_t>(options.congruent_points);
-  const OverlapCloud from = gathered(source, overlap_points(source, target, grown.target_from_source, points));
+  const std::vector<std::uint32_t> overlap = overlap_points(source, target, grown.target_from_source, points);
+  OverlapCloud from = gathered(source, overlap);
   const OverlapCloud to = gathered(target, overlap_points(target, source, grown.target_from_source.inverse(), points));
   CongruentOptions congruent;
   congruent.max_trials = kTrials;
   congruent.max_transforms = kKept;
+  congruent.bases = options.congruent_bases;
+  if (congruent.bases == "boundary")
+    from.at_boundary = boundary_marks(source, target, grown.target_from_source, overlap);
   CongruentSearch search;
   search.prior = CongruentPrior{grown.target_from_source, kMaxRotationRad, kMaxTranslationVoxels * static_cast<double>(source.voxel_m)};
   const auto result = register_congruent(from.view(), to.view(), congruent.tolerance_voxels * static_cast<double>(source.voxel_m),

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -33,6 +34,7 @@ struct PairOptions {
   int congruent_hypotheses = 4;
   int fine_hypotheses = 40;
   int congruent_points = 600;
+  std::string congruent_bases = "area";
   int score_points = 2000;
   double accept_probability = 0.97;
   double ambiguous_probability = 0.05;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "congruent/synthetic.h"
@@ -113,6 +114,42 @@ TEST(SelectBase, TheLotDecidesAndRepeats) {
   ASSERT_TRUE(a && b && c);
   EXPECT_EQ(a->points, b->points);
   EXPECT_NE(a->points, c->points);
+}
+
+TEST(SelectBase, TakesCornersAtTheBoundaryWhereTheyMakeABase) {
+  const test::Cloud yard = test::sample_yard(0.2, 0.005, 0.05, 1);
+  std::vector<std::uint8_t> marks;
+  for (const auto& p : yard.points) marks.push_back(p.x() > 0.5F);
+  OrientedCloud view = yard.view();
+  view.at_boundary = marks;
+  const auto cloud = recentred(view, true);
+  ASSERT_EQ(cloud.boundary.size(), static_cast<std::size_t>(std::count(marks.begin(), marks.end(), 1)));
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Rng rng(seed), same(seed);
+    const auto base = select_base(cloud, {.width_m = 2, .coplanarity_m = 0.1, .at_boundary = true}, rng);
+    ASSERT_TRUE(base) << seed;
+    for (const std::uint32_t corner : base->points)
+      EXPECT_TRUE(std::ranges::binary_search(cloud.boundary, corner)) << seed;
+    EXPECT_LE(base->gap_m, 0.1);
+    const auto anywhere = select_base(cloud, {.width_m = 2, .coplanarity_m = 0.1}, same);
+    ASSERT_TRUE(anywhere);
+    EXPECT_NE(anywhere->points, base->points);
+  }
+}
+
+TEST(SelectBase, TakesCornersAnywhereWhereTheBoundaryMakesNoBase) {
+  const test::Cloud yard = test::sample_yard(0.2, 0.005, 0.05, 1);
+  const auto base_with = [&](std::size_t num_marked) {
+    std::vector<std::uint8_t> marks(yard.points.size(), 0);
+    std::fill_n(marks.begin(), num_marked, std::uint8_t{1});  // one row along a side: no area, no base
+    OrientedCloud view = yard.view();
+    if (num_marked > 0) view.at_boundary = marks;
+    Rng rng(3);
+    return select_base(recentred(view, true), {.width_m = 2.5, .coplanarity_m = 0.1, .at_boundary = true}, rng);
+  };
+  EXPECT_TRUE(base_with(0)) << "nothing is known of a boundary";
+  EXPECT_TRUE(base_with(3)) << "three points are no base";
+  EXPECT_TRUE(base_with(8)) << "a line is no base";
 }
 
 TEST(SelectBase, GivesNothingWhereThereIsNoBase) {

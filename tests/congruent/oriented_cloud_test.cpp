@@ -25,6 +25,14 @@ TEST(Recentred, DropsWhatIsNotUsableAndCentresTheRest) {
   EXPECT_EQ(recentred({points, normals}, false).points.size(), 3U);
 }
 
+TEST(Recentred, TheBoundaryFollowsThePointsKept) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<Eigen::Vector3f> points{{0, 0, 0}, {nan, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  const std::vector<std::uint8_t> marks{0, 1, 0, 1};
+  EXPECT_EQ(recentred({points, {}, marks}, false).boundary, std::vector<std::uint32_t>{2});
+  EXPECT_TRUE(recentred({points, {}}, false).boundary.empty());
+}
+
 TEST(Recentred, KeepsDetailFarFromTheOrigin) {
   // A million metres out a float still holds multiples of 1/16 m: none of it may get lost.
   const std::vector<Eigen::Vector3f> points{{1e6F, 1e6F, 0}, {1e6F + 0.0625F, 1e6F, 0}};

@@ -218,6 +218,69 @@ TEST(RegisterCongruent, SameSeedSameBytesForAnyNumberOfThreads) {
   EXPECT_NE(run(scene, 0.6, 8).counts.distance_tests, results[0].counts.distance_tests) << "the seed is not used";
 }
 
+// The overlap of the yard alone, with the rows that its two ends consist of marked.
+struct MarkedScene {
+  Scene scene;
+  std::vector<std::uint8_t> marks;
+  [[nodiscard]] OrientedCloud source() const { return {scene.source.points, scene.source.normals, marks}; }
+};
+
+MarkedScene marked_overlap(std::uint64_t seed) {
+  constexpr double kEnd = 1.5, kRim = 0.4;
+  const test::Cloud source = test::sample_yard(kSpacing, 0.01, 0.08, 2 * seed, -kEnd, kEnd);
+  MarkedScene marked;
+  for (const auto& p : source.points) marked.marks.push_back(std::abs(static_cast<double>(p.x())) > kEnd - kRim);
+  Rng rng(seed);
+  const Transform source_from_world = test::random_transform(rng, 5),
+                  target_from_world = test::random_transform(rng, 5);
+  marked.scene = {test::moved(source, source_from_world),
+                  test::moved(test::sample_yard(kSpacing, 0.01, 0.08, 2 * seed + 1), target_from_world),
+                  target_from_world * source_from_world.inverse()};
+  return marked;
+}
+
+CongruentResult run_at_boundary(const MarkedScene& marked, std::uint64_t seed) {
+  CongruentOptions options;
+  options.bases = "boundary";
+  return register_congruent(marked.source(), marked.scene.target.view(), kTolerance, 1, seed, options);
+}
+
+TEST(RegisterCongruent, BasesAtTheBoundaryFindTheTruthToo) {
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    const MarkedScene marked = marked_overlap(seed);
+    const CongruentResult result = run_at_boundary(marked, seed);
+    ASSERT_FALSE(result.transforms.empty()) << result.reason;
+    EXPECT_LT(error_m(marked.scene, result.transforms.front().target_from_source), 2 * kTolerance) << seed;
+  }
+}
+
+TEST(RegisterCongruent, MarksOfTheBoundaryChangeNothingUnlessAskedFor) {
+  const MarkedScene marked = marked_overlap(1);
+  const CongruentResult with =
+      register_congruent(marked.source(), marked.scene.target.view(), kTolerance, 1, 1, CongruentOptions{});
+  expect_same_bytes(with, run(marked.scene, 1, 1));
+  EXPECT_NE(run_at_boundary(marked, 1).counts.distance_tests, with.counts.distance_tests);
+}
+
+TEST(RegisterCongruent, BasesAtTheBoundaryAreTheSameForAnyNumberOfThreads) {
+  const MarkedScene marked = marked_overlap(2);
+  const auto with_threads = [&](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return run_at_boundary(marked, 5);
+  };
+  const CongruentResult one = with_threads(1);
+  ASSERT_FALSE(one.transforms.empty());
+  expect_same_bytes(one, with_threads(7));
+}
+
+TEST(RegisterCongruent, MarksMustBeAsManyAsPoints) {
+  MarkedScene marked = marked_overlap(1);
+  marked.marks.pop_back();
+  const CongruentResult result = run_at_boundary(marked, 1);
+  EXPECT_TRUE(result.transforms.empty());
+  EXPECT_NE(result.reason.find("marks of the boundary"), std::string::npos) << result.reason;
+}
+
 test::Cloud of_points(std::vector<Eigen::Vector3f> points) {
   test::Cloud cloud{std::move(points), {}};
   cloud.normals.assign(cloud.points.size(), Eigen::Vector3f(0, 0, 1));

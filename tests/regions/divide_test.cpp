@@ -1,3 +1,4 @@
+// What holds for compact clusters only; the promises of every division are in divisions_test.cpp.
 #include "regions/divide.h"
 
 #include <gtest/gtest.h>
@@ -5,11 +6,12 @@
 #include <algorithm>
 
 #include "pairwise/synthetic_product.h"
-#include "pairwise/threads.h"
-#include "store/archive.h"
+#include "regions/partition.h"
 
 namespace isthmus {
 namespace {
+
+using testing::expect_partition;
 
 struct Scan {
   SampledScan sampled;
@@ -23,31 +25,7 @@ Scan hall() {
   return scan;
 }
 
-Scan keypoints_at(const testing::Points& points) {
-  Scan scan;
-  scan.sampled.voxel_m = 0.1;
-  scan.sampled.points = points;
-  scan.sampled.normals.assign(points.size(), Eigen::Vector3f::UnitZ());
-  for (std::uint32_t i = 0; i < points.size(); ++i) scan.features.keypoints.push_back(i);
-  return scan;
-}
-
-void expect_partition(const RegionMap& map, std::size_t num_keypoints) {
-  ASSERT_EQ(map.region_of_keypoint.size(), num_keypoints);
-  std::vector<int> members(num_keypoints, 0);
-  for (std::uint32_t r = 0; r < map.regions.size(); ++r) {
-    EXPECT_FALSE(map.regions[r].keypoints.empty());
-    EXPECT_TRUE(std::is_sorted(map.regions[r].keypoints.begin(), map.regions[r].keypoints.end()));
-    for (const std::uint32_t k : map.regions[r].keypoints) {
-      ASSERT_LT(k, num_keypoints);
-      ++members[k];
-      EXPECT_EQ(map.region_of_keypoint[k], r);
-    }
-  }
-  EXPECT_EQ(std::count(members.begin(), members.end(), 1), static_cast<std::ptrdiff_t>(num_keypoints));
-}
-
-TEST(Divide, EveryKeypointBelongsToExactlyOneRegion) {
+TEST(DivideByClusters, MakesAsManyRegionsAsAskedFor) {
   const Scan scan = hall();
   for (const int per_region : {5, 40, 100000}) {
     const RegionMap map = divide(scan.sampled, scan.features, {"clusters", per_region});
@@ -62,43 +40,7 @@ TEST(Divide, EveryKeypointBelongsToExactlyOneRegion) {
   }
 }
 
-TEST(Divide, NeighboursAreMutualSortedAndNear) {
-  const Scan scan = hall();
-  const RegionMap map = divide(scan.sampled, scan.features, {});
-  std::size_t links = 0;
-  for (std::uint32_t a = 0; a < map.regions.size(); ++a) {
-    const auto& neighbours = map.regions[a].neighbours;
-    EXPECT_TRUE(std::is_sorted(neighbours.begin(), neighbours.end()));
-    for (const std::uint32_t b : neighbours) {
-      ASSERT_LT(b, map.regions.size());
-      EXPECT_NE(a, b);
-      const auto& back = map.regions[b].neighbours;
-      EXPECT_TRUE(std::binary_search(back.begin(), back.end(), a)) << a << " and " << b;
-    }
-    links += neighbours.size();
-  }
-  EXPECT_GT(links, map.regions.size());  // a hall is one piece
-}
-
-TEST(Divide, CentreNormalAndRadiusAreThoseOfTheKeypoints) {
-  const Scan scan = hall();
-  for (const Region& region : divide(scan.sampled, scan.features, {}).regions) {
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
-    float radius = 0;
-    for (const std::uint32_t k : region.keypoints) {
-      centre += scan.sampled.points[scan.features.keypoints[k]].cast<double>();
-      normal += scan.sampled.normals[scan.features.keypoints[k]].cast<double>();
-    }
-    const auto n = static_cast<double>(region.keypoints.size());
-    EXPECT_LT((region.centre.cast<double>() - centre / n).norm(), 1e-4);
-    EXPECT_LT((region.normal.cast<double>() - normal / n).norm(), 1e-4);
-    for (const std::uint32_t k : region.keypoints)
-      radius = std::max(radius, (scan.sampled.points[scan.features.keypoints[k]] - region.centre).norm());
-    EXPECT_NEAR(region.radius_m, radius, 1e-4);
-  }
-}
-
-TEST(Divide, RegionsAreCompact) {
+TEST(DivideByClusters, PutsKeypointsToTheNearestCentre) {
   const Scan scan = hall();
   const RegionMap map = divide(scan.sampled, scan.features, {});
   std::size_t nearest_is_own = 0;
@@ -109,37 +51,6 @@ TEST(Divide, RegionsAreCompact) {
                                   [&](const Region& r) { return (p - r.centre).norm() >= own * 0.999f; });
   }
   EXPECT_GT(nearest_is_own, map.region_of_keypoint.size() * 9 / 10);
-}
-
-TEST(Divide, NoneOneAndEqualKeypoints) {
-  EXPECT_TRUE(divide({}, {}, {}).regions.empty());
-  const Scan one = keypoints_at({{1, 2, 3}});
-  const RegionMap map = divide(one.sampled, one.features, {});
-  expect_partition(map, 1);
-  EXPECT_TRUE(map.regions[0].neighbours.empty());
-  EXPECT_LT((map.regions[0].centre - Eigen::Vector3f(1, 2, 3)).norm(), 1e-6f);
-  const Scan equal = keypoints_at(testing::Points(200, Eigen::Vector3f(4, 4, 4)));
-  expect_partition(divide(equal.sampled, equal.features, {}), 200);
-}
-
-TEST(Divide, TwoHeapsAreNotMixed) {
-  testing::Points points = testing::sphere_points(80, {0, 0, 0}, 1, 1);
-  const testing::Points other = testing::sphere_points(80, {50, 0, 0}, 1, 2);
-  points.insert(points.end(), other.begin(), other.end());
-  const Scan scan = keypoints_at(points);
-  const RegionMap map = divide(scan.sampled, scan.features, {"clusters", 40});
-  expect_partition(map, 160);
-  for (const Region& region : map.regions) {
-    EXPECT_LT(region.radius_m, 3);
-    for (const std::uint32_t n : region.neighbours) EXPECT_LT((map.regions[n].centre - region.centre).norm(), 10);
-  }
-}
-
-TEST(Divide, TheSameBytesForAnyNumberOfThreads) {
-  const Scan scan = hall();
-  const auto run = [&] { return store::to_bytes(divide(scan.sampled, scan.features, {})); };
-  const std::string one = testing::with_threads(1, run);
-  EXPECT_EQ(testing::with_threads(7, run), one);
 }
 
 }  // namespace

@@ -2,6 +2,10 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
 #include <exception>
 
 #include "commands.h"
@@ -24,6 +28,7 @@ constexpr const char* kExitCodes =
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the user's limit is an error like a full disk, not the end
   CLI::App app(kAbout, "isthmus");
   app.set_version_flag("--version", fmt::format("isthmus {}", isthmus::kVersion), "Show the version");
   app.set_help_flag("-h,--help", "Show this help; 'isthmus COMMAND --help' shows a command's");
@@ -44,6 +49,11 @@ int main(int argc, char** argv) {
     return asked_for_help ? isthmus::cli::kSuccess : isthmus::cli::kUsage;
   } catch (const std::exception& error) {
     fmt::print(stderr, "isthmus: internal failure: {}\n", error.what());
+    return isthmus::cli::kFailure;
+  }
+  // A pipe or a disk that took only half of the results must not look like success.
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    fmt::print(stderr, "error: standard output: cannot be written: {}\n", std::strerror(errno));
     return isthmus::cli::kFailure;
   }
   return exit_code;

@@ -152,7 +152,7 @@ class SurveyGraph {
   void arrive(const ScanMessage& work, Barrier::output_ports_type& ports) {
     work->product.reset();
     if (work->outcome->error) {
-      if (work->outcome->error->where.empty()) work->outcome->error->where = work->plan.ref.name;
+      work->outcome->error = by_name(*work->outcome->error, work->plan.ref);
       events_.warn(work->outcome->error->text());
     }
     ++scans_done_;
@@ -163,7 +163,7 @@ class SurveyGraph {
 
   void choose_candidates() {
     if (stop_) return;
-    if (const auto error = contained([&] { propose(); })) out_.warnings.push_back(error->text());
+    if (const auto error = contained([&] { propose(); })) warn(error->text());
     if (out_.pairs.empty()) solve_.try_put({});
     num_pairs_ = out_.pairs.size();
     for (PairOutcome& pair : out_.pairs) submit(pair, {});
@@ -283,6 +283,7 @@ class SurveyGraph {
     Result<ScanProduct> product = maker_.product(*plan_of_.at(id), times);
     const auto made = std::ranges::count(times, false, &StageTime::from_store);
     num_made_again_ += static_cast<std::size_t>(made);
+    if (!product) product = tl::unexpected(by_name(product.error(), plan_of_.at(id)->ref));
     return product;
   }
 
@@ -368,6 +369,11 @@ SurveyOutcome run_survey(const std::vector<io::ListedScan>& scans, const Setting
     count_products(out, graph.num_made_again());
   });
   out.stopped = stop;
+  std::vector<std::string> of_scans;
+  for (const ScanOutcome& scan : out.scans) {
+    if (scan.error) of_scans.push_back(scan.error->text());
+  }
+  out.warnings.insert(out.warnings.begin(), of_scans.begin(), of_scans.end());
   std::ranges::sort(out.pairs, {}, [](const PairOutcome& p) { return std::pair(p.source, p.target); });
   return out;
 }

@@ -12,6 +12,7 @@
 #include <mutex>
 
 #include "base/atomic_file.h"
+#include "io/format_table.h"
 #include "io/scan_directory.h"
 #include "pipelines/output_folder.h"
 #include "pipelines/planning.h"
@@ -102,6 +103,12 @@ Result<void> write_results(const Job& job, const report::SurveyRecord& record) {
   return report::write_outputs(record, job.output);
 }
 
+std::string extensions() {
+  std::vector<std::string_view> all;
+  for (const io::Format& format : io::formats()) all.push_back(format.extensions);
+  return fmt::format("{}", fmt::join(all, " "));
+}
+
 std::string text_of(const std::vector<fs::path>& paths) {
   std::vector<std::string> words;
   for (const fs::path& path : paths) words.push_back(path.string());
@@ -124,7 +131,7 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
   if (!listing) return tl::unexpected(listing.error());
   for (const std::string& note : listing->notes) events.info(note);
   if (listing->scans.empty()) {
-    return fail("no scans found", text_of(job.inputs), "'isthmus inspect FILE' says why a file is none");
+    return fail("no scans found", text_of(job.inputs), "files are known by their extensions: " + extensions());
   }
   const Result<void> space = output->reserve(bytes_of_results(listing->scans.size(), job.settings.candidates));
   if (!space) return tl::unexpected(space.error());

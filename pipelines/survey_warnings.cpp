@@ -77,6 +77,7 @@ std::vector<std::string> survey_warnings(const report::SurveyRecord& record) {
   notes.append_to(warnings);
   failures.append_to(warnings);
   add_parts(record, warnings);
+  if (record.scans.size() == 1) warnings.push_back(record.scans[0].name + ": the only scan, there is nothing to join");
   return warnings;
 }
 

@@ -49,6 +49,7 @@ TEST_F(Register, all_scans_unreadable_still_writes_every_file) {
 TEST_F(Register, a_single_scan_is_one_component) {
   make_survey(1);
   EXPECT_EQ(register_scans().exit_code, 0);
+  EXPECT_EQ(run_json(out_)["warnings"].at(0), "scan_000.ply: the only scan, there is nothing to join");
   for (const std::string& file : kAllFiles) EXPECT_TRUE(fs::exists(out_ / file)) << file;
 }
 
@@ -156,7 +157,11 @@ TEST_F(Register, two_runs_do_not_share_an_output) {
 
 TEST_F(Register, leaves_no_folder_behind_when_there_is_nothing_to_do) {
   fs::create_directories(scans_);
-  EXPECT_EQ(register_scans().exit_code, 1);
+  const Said said = register_scans();
+  EXPECT_EQ(said.exit_code, 1);
+  EXPECT_NE(said.err.find(scans_.string() + ": no scans found (files are known by their extensions: ptx ply"),
+            std::string::npos)
+      << said.err;
   EXPECT_FALSE(fs::exists(out_));
 }
 

@@ -115,6 +115,23 @@ std::string text_of(const std::vector<fs::path>& paths) {
   return fmt::format("{}", fmt::join(words, " "));
 }
 
+Result<io::ScanListing> scans_of(const Job& job, const Events& events) {
+  Result<io::ScanListing> listing = io::list_scans(job.inputs, folders_of_output(job));
+  if (!listing) return listing;
+  for (const std::string& note : listing->notes) events.info(note);
+  if (!listing->scans.empty()) return listing;
+  return fail("no scans found", text_of(job.inputs), "files are known by their extensions: " + extensions());
+}
+
+/// Those of the listing before, those of the finished survey behind what the record holds already; the latter are told.
+void complete_warnings(report::SurveyRecord& record, const std::vector<std::string>& of_listing, const Events& events) {
+  const std::vector<std::string> late = survey_warnings(record);
+  for (const std::string& warning : late) events.warn(warning);
+  for (const std::string& warning : record.solution.warnings) events.warn(warning);
+  record.warnings.insert(record.warnings.begin(), of_listing.begin(), of_listing.end());
+  record.warnings.insert(record.warnings.end(), late.begin(), late.end());
+}
+
 }  // namespace
 
 Result<JobResult> run_job(const Job& job, const std::string& command, const Events& events,
@@ -127,12 +144,8 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
 
   Result<OutputFolder> output = OutputFolder::open(job.output);  // before anything is read: it may be a long night
   if (!output) return tl::unexpected(output.error());
-  Result<io::ScanListing> listing = io::list_scans(job.inputs, folders_of_output(job));
+  Result<io::ScanListing> listing = scans_of(job, events);
   if (!listing) return tl::unexpected(listing.error());
-  for (const std::string& note : listing->notes) events.info(note);
-  if (listing->scans.empty()) {
-    return fail("no scans found", text_of(job.inputs), "files are known by their extensions: " + extensions());
-  }
   const Result<void> space = output->reserve(bytes_of_results(listing->scans.size(), job.settings.candidates));
   if (!space) return tl::unexpected(space.error());
 
@@ -153,12 +166,7 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
               {"peak_bytes_in_flight", std::to_string(outcome.peak_bytes_in_flight)}};
 
   result.record = record_of(job, std::move(outcome));
-  std::vector<std::string>& warnings = result.record.warnings;
-  warnings.insert(warnings.begin(), listing->warnings.begin(), listing->warnings.end());
-  const std::vector<std::string> late = survey_warnings(result.record);
-  for (const std::string& warning : late) events.warn(warning);
-  for (const std::string& warning : result.record.solution.warnings) events.warn(warning);
-  warnings.insert(warnings.end(), late.begin(), late.end());
+  complete_warnings(result.record, listing->warnings, events);
   result.end = end_of(result.record);
   run.input = text_of(job.inputs);
   run.output = job.output.string();

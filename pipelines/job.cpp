@@ -68,6 +68,15 @@ Result<Job> job_of(const YAML::Node& node, const fs::path& file) {
   return job;
 }
 
+/// Two spellings of one folder are the same: "out", "./out/", a link to it.
+fs::path one_spelling(const fs::path& folder) {
+  std::error_code error;
+  const fs::path absolute = fs::absolute(folder, error);
+  fs::path path = fs::weakly_canonical(absolute, error);
+  if (error) path = absolute.lexically_normal();
+  return path.has_filename() ? path : path.parent_path();
+}
+
 /// Relative to the folder, so that input and output may move together.
 std::string relative_path(const fs::path& path, const fs::path& folder) {
   const fs::path relative =
@@ -95,11 +104,11 @@ Result<std::vector<Job>> read_jobs(const fs::path& file) {
   const auto add = [&](const YAML::Node& one) -> Result<void> {
     Result<Job> job = job_of(one, file);
     if (!job) return tl::unexpected(job.error());
-    for (const Job& earlier : jobs) {
-      if (earlier.output == job->output) {
-        return fail(fmt::format("two jobs write to {}", job->output.string()), config::place(file.string(), one.Mark()),
-                    "the other is " + earlier.origin);
-      }
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+      if (one_spelling(jobs[i].output) != one_spelling(job->output)) continue;
+      return fail(fmt::format("job {} and job {} (at {}) write to the same folder {}", jobs.size() + 1, i + 1,
+                              jobs[i].origin, job->output.string()),
+                  config::place(file.string(), one["output"].Mark()), "give each job an output of its own");
     }
     jobs.push_back(std::move(*job));
     return {};

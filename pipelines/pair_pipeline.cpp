@@ -17,8 +17,12 @@ Result<PairAnswer> register_files(const io::ScanRef& source, const io::ScanRef& 
                                   const store::Store& store, const Events& events) {
   const std::atomic<bool> never_stop{false};
   const SurveyPlan plan = plan_survey({{target, {}}, {source, {}}}, settings, store, events, never_stop);
-  if (!plan.failed.empty()) return tl::unexpected(plan.failed.front().error);
   PairAnswer answer;
+  for (const FailedScan& failed : plan.failed) {
+    if (!failed.other_unit) return tl::unexpected(failed.error);
+    answer.result.reason = failed.error.text();  // both can be read: an answer, though no pose
+    return answer;
+  }
   answer.voxel_m = plan.voxel_m;
   const ProductMaker maker(settings, store);
   std::array<std::vector<StageTime>, 2> times;

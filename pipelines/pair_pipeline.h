@@ -17,7 +17,8 @@ struct PairAnswer {
   std::vector<StageTime> target_times;
 };
 
-/// Fails when one of the scans cannot be read or reduced. Runs in an arena of its own.
+/// Fails when one of the scans cannot be read or reduced; scans in different units are a failed pair. Runs in an arena
+/// of its own.
 Result<PairAnswer> run_pair(const io::ScanRef& source, const io::ScanRef& target, const Settings& settings,
                             const store::Store& store, const Events& events);
 

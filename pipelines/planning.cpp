@@ -5,13 +5,17 @@
 #include <cmath>
 #include <filesystem>
 
+#include <oneapi/tbb/task_arena.h>
+
 #include "base/parallel.h"
 #include "pipelines/code_versions.h"
 #include "store/content_digest.h"
+#include "survey/unit_check.h"
 
 namespace isthmus::pipelines {
 namespace {
 
+constexpr std::size_t kChunkPoints = std::size_t{1} << 16;
 constexpr std::size_t kProbePoints = 200000;  // 2.4 MB a thread; enough for a voxel good to a few per cent
 constexpr double kFixedBytes = 64e6;          // chunk, probe, descriptors and regions, whatever the number of voxels
 constexpr double kBytesPerVoxel =
@@ -62,6 +66,48 @@ Look look_at(const io::ScanRef& ref, const Settings& settings, const store::Stor
   return look;
 }
 
+/// What is wrong with a scan, its content read to the end.
+std::optional<Error> trouble_of(const io::ScanRef& ref, const Settings& settings, const store::Store& store) {
+  const Look look = look_at(ref, settings, store);
+  if (look.error) return look.error;
+  const store::Key key =
+      store::make_key("readable", kSampledVersion, std::array<std::string, 2>{look.content, std::to_string(ref.index)});
+  if (store.load<std::uint64_t>(key)) return std::nullopt;
+  Result<std::unique_ptr<io::ScanReader>> reader = io::open_scan(ref);
+  if (!reader) return reader.error();
+  std::uint64_t num_points = 0;
+  for (PointChunk chunk;;) {
+    if (Result<void> done = (*reader)->read(chunk, kChunkPoints); !done) return done.error();
+    if (chunk.points.empty()) break;
+    num_points += chunk.points.size();
+  }
+  store.keep(key, num_points);
+  return std::nullopt;
+}
+
+/// Moves scans that seem to be in another unit from `looks` to the errors, so that they decide neither the voxel nor
+/// any pose.
+std::vector<bool> mark_other_units(const std::vector<io::ListedScan>& scans, std::vector<Look>& looks) {
+  std::vector<bool> marked(looks.size(), false);
+  std::vector<double> extents;
+  std::vector<std::size_t> index;
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    if (!looks[i].scale) continue;
+    extents.push_back(looks[i].scale->extent_m);
+    index.push_back(i);
+  }
+  const auto suspicions = suspect_units(extents);
+  for (std::size_t k = 0; k < suspicions.size(); ++k) {
+    if (!suspicions[k]) continue;
+    looks[index[k]].error =
+        Error{suspicions[k]->text(), scans[index[k]].scan.name,
+              "convert it to the others' unit; if its size is right, set candidates.check_units=false"};
+    looks[index[k]].scale.reset();
+    marked[index[k]] = true;
+  }
+  return marked;
+}
+
 /// Memory that making a scan's products takes: surfaces have a number of voxels that falls with the square of their
 /// size.
 std::size_t bytes_to_make(const io::ScanRef& ref, const ScanScale& scale, double voxel_m, int target_points) {
@@ -89,6 +135,11 @@ SurveyPlan plan_survey(const std::vector<io::ListedScan>& scans, const Settings&
   });
   SurveyPlan plan;
   if (stop) return plan;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    if (looks[i].error) looks[i].error = by_name(*looks[i].error, scans[i].scan);
+  }
+  std::vector<bool> other_unit(scans.size(), false);
+  if (settings.candidates.check_units) other_unit = mark_other_units(scans, looks);
   std::vector<ScanScale> scales;
   for (const Look& look : looks) {
     if (look.scale) scales.push_back(*look.scale);
@@ -103,7 +154,7 @@ SurveyPlan plan_survey(const std::vector<io::ListedScan>& scans, const Settings&
   for (std::size_t i = 0; i < scans.size(); ++i) {
     const int id = static_cast<int>(i);
     if (looks[i].error) {
-      plan.failed.push_back({id, *looks[i].error});
+      plan.failed.push_back({id, *looks[i].error, other_unit[i]});
       continue;
     }
     plan.scans.push_back(make_plan(id, scans[i].scan, looks[i].content, plan.voxel_m, digests));
@@ -111,6 +162,17 @@ SurveyPlan plan_survey(const std::vector<io::ListedScan>& scans, const Settings&
         bytes_to_make(scans[i].scan, *looks[i].scale, plan.voxel_m, settings.sampling.target_points);
   }
   return plan;
+}
+
+void take_readable_twins(io::ScanListing& listing, const Settings& settings, const store::Store& store,
+                         const std::atomic<bool>& stop) {
+  oneapi::tbb::task_arena arena(threads_of(settings.run));
+  arena.execute([&] {
+    io::take_readable_twins(listing, [&](const io::ScanRef& scan) -> std::optional<Error> {
+      if (stop) return std::nullopt;
+      return trouble_of(scan, settings, store);
+    });
+  });
 }
 
 }  // namespace isthmus::pipelines

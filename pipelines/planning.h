@@ -12,10 +12,11 @@
 
 namespace isthmus::pipelines {
 
-/// A scan that cannot be worked on, and why.
+/// A scan that is not worked on, and why.
 struct FailedScan {
   int id = 0;
   Error error;
+  bool other_unit = false;  ///< it can be read, but seems to be in another unit than the others
 };
 
 struct SurveyPlan {
@@ -26,9 +27,14 @@ struct SurveyPlan {
 };
 
 /// Reads digests and probes of all scans in parallel. An id is an index into `scans`. The voxel is the one from the
-/// settings or follows from all scans together; it does not depend on their order. Scans that are empty or unreadable
-/// are in `failed`.
+/// settings or follows from all scans together; it does not depend on their order. Scans that are empty, unreadable or
+/// in another unit than the others are in `failed`. Errors name scans, not paths.
 SurveyPlan plan_survey(const std::vector<io::ListedScan>& scans, const Settings& settings, const store::Store& store,
                        const Events& events, const std::atomic<bool>& stop);
+
+/// io::take_readable_twins(), each file being read to its end. Runs in an arena of its own; what could be read is
+/// remembered in the store.
+void take_readable_twins(io::ScanListing& listing, const Settings& settings, const store::Store& store,
+                         const std::atomic<bool>& stop);
 
 }  // namespace isthmus::pipelines

@@ -12,9 +12,13 @@
 #include <mutex>
 
 #include "base/atomic_file.h"
+#include "io/format_table.h"
 #include "io/scan_directory.h"
+#include "pipelines/output_folder.h"
+#include "pipelines/planning.h"
 #include "pipelines/survey_pipeline.h"
 #include "pipelines/survey_record.h"
+#include "pipelines/survey_warnings.h"
 #include "report/write_outputs.h"
 #include "store/store.h"
 
@@ -59,10 +63,73 @@ std::vector<fs::path> folders_of_output(const Job& job) {
   return folders;
 }
 
+/// About what the results take on the disk: measured 14 kB and 1.6 kB a pair with 20 scans, temporary twins included.
+std::uint64_t bytes_of_results(std::size_t num_scans, const CandidateOptions& options) {
+  constexpr std::uint64_t kFixed = 150'000, kPerScan = 5'000, kPerPair = 3'000;
+  const std::uint64_t all_pairs = static_cast<std::uint64_t>(num_scans) * (num_scans - 1) / 2;
+  const std::uint64_t chosen =
+      2 * static_cast<std::uint64_t>(num_scans) * static_cast<std::uint64_t>(options.pairs_per_scan);
+  const bool all = num_scans <= static_cast<std::size_t>(options.all_pairs_up_to);
+  return kFixed + kPerScan * num_scans + kPerPair * (all ? all_pairs : std::min(all_pairs, chosen));
+}
+
+/// Takes what the store tells and passes it on.
+class StoreTroubles {
+ public:
+  explicit StoreTroubles(const Events& events) : events_(events) {}
+  void add(const Error& error) {
+    const std::lock_guard lock(mutex_);
+    texts_.push_back(error.text());
+    events_.warn(error.text());
+  }
+  std::vector<std::string> sorted() {
+    const std::lock_guard lock(mutex_);
+    std::ranges::sort(texts_);
+    return texts_;
+  }
+
+ private:
+  const Events& events_;
+  std::mutex mutex_;
+  std::vector<std::string> texts_;
+};
+
+/// Files of an earlier run must not pass for this one's if writing ends halfway: run.json is the mark of completeness.
+Result<void> write_results(const Job& job, const report::SurveyRecord& record) {
+  std::error_code ignored;
+  fs::remove(job.output / "run.json", ignored);
+  const Result<void> resolved = write_file_atomically(job.output / "resolved.yaml", resolved_job(job, job.output));
+  if (!resolved) return resolved;
+  return report::write_outputs(record, job.output);
+}
+
+std::string extensions() {
+  std::vector<std::string_view> all;
+  for (const io::Format& format : io::formats()) all.push_back(format.extensions);
+  return fmt::format("{}", fmt::join(all, " "));
+}
+
 std::string text_of(const std::vector<fs::path>& paths) {
   std::vector<std::string> words;
   for (const fs::path& path : paths) words.push_back(path.string());
   return fmt::format("{}", fmt::join(words, " "));
+}
+
+Result<io::ScanListing> scans_of(const Job& job, const Events& events) {
+  Result<io::ScanListing> listing = io::list_scans(job.inputs, folders_of_output(job));
+  if (!listing) return listing;
+  for (const std::string& note : listing->notes) events.info(note);
+  if (!listing->scans.empty()) return listing;
+  return fail("no scans found", text_of(job.inputs), "files are known by their extensions: " + extensions());
+}
+
+/// Those of the listing before, those of the finished survey behind what the record holds already; the latter are told.
+void complete_warnings(report::SurveyRecord& record, const std::vector<std::string>& of_listing, const Events& events) {
+  const std::vector<std::string> late = survey_warnings(record);
+  for (const std::string& warning : late) events.warn(warning);
+  for (const std::string& warning : record.solution.warnings) events.warn(warning);
+  record.warnings.insert(record.warnings.begin(), of_listing.begin(), of_listing.end());
+  record.warnings.insert(record.warnings.end(), late.begin(), late.end());
 }
 
 }  // namespace
@@ -75,16 +142,19 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
   run.started = utc_now();
   run.host = host_name();
 
-  Result<io::ScanListing> listing = io::list_scans(job.inputs, folders_of_output(job));
+  Result<OutputFolder> output = OutputFolder::open(job.output);  // before anything is read: it may be a long night
+  if (!output) return tl::unexpected(output.error());
+  Result<io::ScanListing> listing = scans_of(job, events);
   if (!listing) return tl::unexpected(listing.error());
-  for (const std::string& note : listing->notes) events.info(note);
-  if (listing->scans.empty()) {
-    return fail("no scans found", text_of(job.inputs), "docs/formats.md lists the formats and their extensions");
-  }
+  const Result<void> space = output->reserve(bytes_of_results(listing->scans.size(), job.settings.candidates));
+  if (!space) return tl::unexpected(space.error());
 
+  StoreTroubles troubles(events);
   const Result<store::Store> store =
-      store::Store::open(store_folder(job), [&](const Error& damage) { events.warn(damage.text()); });
+      store::Store::open(store_folder(job), [&](const Error& trouble) { troubles.add(trouble); });
   if (!store) return tl::unexpected(store.error());
+  take_readable_twins(*listing, job.settings, *store, stop);
+  for (const std::string& warning : listing->warnings) events.warn(warning);
 
   JobResult result;
   SurveyOutcome outcome = run_survey(listing->scans, job.settings, *store, events, stop);
@@ -96,6 +166,7 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
               {"peak_bytes_in_flight", std::to_string(outcome.peak_bytes_in_flight)}};
 
   result.record = record_of(job, std::move(outcome));
+  complete_warnings(result.record, listing->warnings, events);
   result.end = end_of(result.record);
   run.input = text_of(job.inputs);
   run.output = job.output.string();
@@ -104,15 +175,10 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   run.peak_memory_bytes = peak_memory_bytes();
   run.exit_code = result.end == JobEnd::connected ? 0 : 3;
+  run.warnings = troubles.sorted();
   result.record.run = run;
-  std::error_code code;
-  fs::create_directories(job.output, code);
-  if (code) return fail("cannot create the folder: " + code.message(), job.output.string());
-  const Result<void> resolved = write_file_atomically(job.output / "resolved.yaml", resolved_job(job, job.output));
-  if (!resolved) return tl::unexpected(resolved.error());
-  if (const Result<void> written = report::write_outputs(result.record, job.output); !written) {
-    return tl::unexpected(written.error());
-  }
+  output->give_back();
+  if (const Result<void> written = write_results(job, result.record); !written) return tl::unexpected(written.error());
   return result;
 }
 

@@ -90,7 +90,21 @@ std::vector<float> spread_descriptors(const FeatureCloud& features) {
   return out;
 }
 
+std::string replaced(std::string text, const std::string& old_text, const std::string& new_text) {
+  for (std::size_t at = text.find(old_text); at != std::string::npos; at = text.find(old_text, at + new_text.size())) {
+    text.replace(at, old_text.size(), new_text);
+  }
+  return text;
+}
+
 }  // namespace
+
+Error by_name(Error error, const io::ScanRef& ref) {
+  const std::string path = ref.path.string();
+  for (std::string* text : {&error.what, &error.where, &error.hint}) *text = replaced(std::move(*text), path, ref.name);
+  if (error.where.empty()) error.where = ref.name;
+  return error;
+}
 
 ScanPlan make_plan(int id, const io::ScanRef& ref, const std::string& content_digest, double voxel_m,
                    const SettingsDigests& settings) {

@@ -28,6 +28,9 @@ struct ScanPlan {
   store::Key sampled, features, regions, summary;
 };
 
+/// The error with the scan's name wherever its path stood: the same words wherever the folder lies.
+Error by_name(Error error, const io::ScanRef& ref);
+
 /// Fills in the keys from the digest of the file's content, the voxel and the settings. Neither name nor id enters a
 /// key: a renamed scan keeps its products.
 ScanPlan make_plan(int id, const io::ScanRef& ref, const std::string& content_digest, double voxel_m,

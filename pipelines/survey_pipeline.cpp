@@ -1,6 +1,7 @@
 #include "pipelines/survey_pipeline.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <oneapi/tbb/flow_graph.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/task_arena.h>
@@ -151,8 +152,9 @@ class SurveyGraph {
   /// Serial: the end of a scan's walk and the barrier behind it.
   void arrive(const ScanMessage& work, Barrier::output_ports_type& ports) {
     work->product.reset();
+    ::malloc_trim(0);
     if (work->outcome->error) {
-      if (work->outcome->error->where.empty()) work->outcome->error->where = work->plan.ref.name;
+      work->outcome->error = by_name(*work->outcome->error, work->plan.ref);
       events_.warn(work->outcome->error->text());
     }
     ++scans_done_;
@@ -163,7 +165,7 @@ class SurveyGraph {
 
   void choose_candidates() {
     if (stop_) return;
-    if (const auto error = contained([&] { propose(); })) out_.warnings.push_back(error->text());
+    if (const auto error = contained([&] { propose(); })) warn(error->text());
     if (out_.pairs.empty()) solve_.try_put({});
     num_pairs_ = out_.pairs.size();
     for (PairOutcome& pair : out_.pairs) submit(pair, {});
@@ -223,6 +225,7 @@ class SurveyGraph {
   }
 
   void arrive(const PairMessage& work, PairBarrier::output_ports_type& ports) {
+    ::malloc_trim(0);  // what pairs leave behind in pieces would add up: a few milliseconds each
     ++pairs_done_;
     events_.advance("pairs", pairs_done_, num_pairs_);
     if (pairs_done_ == num_pairs_) std::get<0>(ports).try_put({});
@@ -283,6 +286,7 @@ class SurveyGraph {
     Result<ScanProduct> product = maker_.product(*plan_of_.at(id), times);
     const auto made = std::ranges::count(times, false, &StageTime::from_store);
     num_made_again_ += static_cast<std::size_t>(made);
+    if (!product) product = tl::unexpected(by_name(product.error(), plan_of_.at(id)->ref));
     return product;
   }
 
@@ -368,6 +372,11 @@ SurveyOutcome run_survey(const std::vector<io::ListedScan>& scans, const Setting
     count_products(out, graph.num_made_again());
   });
   out.stopped = stop;
+  std::vector<std::string> of_scans;
+  for (const ScanOutcome& scan : out.scans) {
+    if (scan.error) of_scans.push_back(scan.error->text());
+  }
+  out.warnings.insert(out.warnings.begin(), of_scans.begin(), of_scans.end());
   std::ranges::sort(out.pairs, {}, [](const PairOutcome& p) { return std::pair(p.source, p.target); });
   return out;
 }

@@ -9,7 +9,8 @@
 namespace isthmus {
 
 /// Writes `content` to a temporary file beside `path`, syncs it and renames it over `path`.
-/// Fails with the path and the system's reason (no space left, permission denied, ...); leaves no temporary file behind.
+/// Fails with the path and the system's reason (disk_space.h: on a full disk with the bytes that were needed and are
+/// free); leaves no temporary file behind.
 Result<void> write_file_atomically(const std::filesystem::path& path, std::string_view content);
 
 /// The whole file as bytes, or an error that names it.

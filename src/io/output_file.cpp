@@ -5,8 +5,9 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <utility>
+
+#include "base/disk_space.h"
 
 namespace isthmus::io {
 
@@ -25,7 +26,7 @@ OutputFile::~OutputFile() {
 }
 
 tl::unexpected<Error> OutputFile::system_failure(std::string_view verb) const {
-  return fail("cannot be " + std::string(verb) + ": " + std::strerror(errno), path_.string());
+  return tl::unexpected(write_error("cannot be " + std::string(verb), errno, path_));
 }
 
 Result<OutputFile> OutputFile::create(const std::filesystem::path& path) {

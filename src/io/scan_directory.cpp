@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/parallel.h"
 #include "io/format_table.h"
 #include "io/scan_name.h"
 #include "io/text/table_reader.h"
@@ -33,9 +34,33 @@ bool is_loose_text(const fs::path& path) {
   return extension == ".txt" || extension == ".csv" || extension == ".asc";
 }
 
+void sort_by_name(std::vector<ListedScan>& scans) {
+  std::sort(scans.begin(), scans.end(), [](const ListedScan& a, const ListedScan& b) {
+    const auto file_a = std::string_view(a.scan.name).substr(0, a.scan.name.find('#'));
+    const auto file_b = std::string_view(b.scan.name).substr(0, b.scan.name.find('#'));
+    return std::tie(file_a, a.scan.index) < std::tie(file_b, b.scan.index);
+  });
+}
+
+std::string name_in(const fs::path& base, const fs::path& path) { return scan_name(path.lexically_relative(base), {}); }
+
+/// The scans of a file, or the file with its error.
+std::vector<ListedScan> listed_scans(const fs::path& path, const fs::path& base) {
+  auto scans = scans_of_file(path);
+  if (!scans) return {{{path, 0, name_in(base, path)}, std::move(scans.error())}};
+  std::vector<ListedScan> listed;
+  for (ScanRef& scan : *scans) {
+    const bool several = scans->size() > 1;
+    scan.name = scan_name(path.lexically_relative(base), several ? std::optional(scan.index) : std::nullopt);
+    listed.push_back({std::move(scan), {}});
+  }
+  return listed;
+}
+
 class Lister {
  public:
-  Lister(fs::path base, const std::vector<fs::path>& skip_folders) : base_(std::move(base)) {
+  Lister(fs::path base, const std::vector<fs::path>& skip_folders) {
+    listing_.base = std::move(base);
     for (const fs::path& folder : skip_folders) skip_.insert(normal(folder));
   }
 
@@ -50,16 +75,13 @@ class Lister {
   ScanListing finish();
 
  private:
-  [[nodiscard]] std::string name_of(const fs::path& path) const {
-    return scan_name(path.lexically_relative(base_), {});
-  }
+  [[nodiscard]] std::string name_of(const fs::path& path) const { return name_in(listing_.base, path); }
   void add_error(const fs::path& path, Error error) {
     listing_.scans.push_back({{path, 0, name_of(path)}, std::move(error)});
   }
   void consider(const fs::path& path);
   void take_by_stem();
 
-  fs::path base_;
   std::set<fs::path> skip_;
   std::set<fs::path> taken_;
   std::map<fs::path, std::vector<fs::path>> by_stem_;    // folder and stem -> files with that stem
@@ -78,7 +100,7 @@ void Lister::add_folder(const fs::path& folder) {
     if (!entries->is_directory(ignored)) {
       consider(path);
     } else if (entries->is_symlink(ignored)) {
-      listing_.notes.push_back(name_of(path) + ": a link to a folder, not entered");
+      listing_.warnings.push_back(name_of(path) + ": a link to a folder, not entered");
     } else {
       add_folder(path);
     }
@@ -100,13 +122,7 @@ void Lister::consider(const fs::path& path) {
 
 void Lister::add_file(const fs::path& path) {
   if (!taken_.insert(path).second) return;
-  auto scans = scans_of_file(path);
-  if (!scans) return add_error(path, std::move(scans.error()));
-  for (ScanRef& scan : *scans) {
-    const bool several = scans->size() > 1;
-    scan.name = scan_name(path.lexically_relative(base_), several ? std::optional(scan.index) : std::nullopt);
-    listing_.scans.push_back({std::move(scan), {}});
-  }
+  for (ListedScan& scan : listed_scans(path, listing_.base)) listing_.scans.push_back(std::move(scan));
 }
 
 void Lister::take_by_stem() {
@@ -115,10 +131,11 @@ void Lister::take_by_stem() {
       return std::pair(preference_of(a), a) < std::pair(preference_of(b), b);
     });
     for (std::size_t i = 1; i < files.size(); ++i) {
-      listing_.notes.push_back(
+      listing_.warnings.push_back(
           fmt::format("{}: not used, {} is taken for the same scan", name_of(files[i]), name_of(files[0])));
     }
     add_file(files[0]);
+    if (files.size() > 1) listing_.twins.push_back({files[0], {files.begin() + 1, files.end()}});
   }
 }
 
@@ -128,12 +145,39 @@ ScanListing Lister::finish() {
     listing_.notes.push_back(fmt::format("{} files with extension '{}' are no scans", count, extension));
   }
   std::sort(listing_.notes.begin(), listing_.notes.end());
-  std::sort(listing_.scans.begin(), listing_.scans.end(), [](const ListedScan& a, const ListedScan& b) {
-    const auto file_a = std::string_view(a.scan.name).substr(0, a.scan.name.find('#'));
-    const auto file_b = std::string_view(b.scan.name).substr(0, b.scan.name.find('#'));
-    return std::tie(file_a, a.scan.index) < std::tie(file_b, b.scan.index);
-  });
+  std::sort(listing_.warnings.begin(), listing_.warnings.end());
+  sort_by_name(listing_.scans);
   return std::move(listing_);
+}
+
+/// What is wrong with a file's scans; nothing if at least one can be read.
+std::optional<Error> trouble_of_file(const std::vector<ListedScan>& scans,
+                                     const std::function<std::optional<Error>(const ScanRef&)>& trouble_of) {
+  std::optional<Error> first;
+  for (const ListedScan& listed : scans) {
+    std::optional<Error> trouble = listed.error ? listed.error : trouble_of(listed.scan);
+    if (!trouble) return std::nullopt;
+    if (!first) first = std::move(trouble);
+  }
+  return first;
+}
+
+/// The scans of the first readable twin, and what was wrong with the taken file.
+struct Replacement {
+  std::vector<ListedScan> scans;  ///< empty: the taken file stays
+  fs::path file;
+  Error trouble;
+};
+
+Replacement replacement_of(const TwinFiles& twins, const fs::path& base,
+                           const std::function<std::optional<Error>(const ScanRef&)>& trouble_of) {
+  std::optional<Error> trouble = trouble_of_file(listed_scans(twins.taken, base), trouble_of);
+  if (!trouble) return {};
+  for (const fs::path& other : twins.others) {
+    std::vector<ListedScan> scans = listed_scans(other, base);
+    if (!trouble_of_file(scans, trouble_of)) return {std::move(scans), other, std::move(*trouble)};
+  }
+  return {};
 }
 
 fs::path common_folder(const fs::path& a, const fs::path& b) {
@@ -163,6 +207,28 @@ Result<ScanListing> list_scans(const std::vector<fs::path>& inputs, const std::v
   for (const fs::path& file : files) lister.add_file(file);
   for (const fs::path& folder : folders) lister.add_folder(folder);
   return lister.finish();
+}
+
+void take_readable_twins(ScanListing& listing, const std::function<std::optional<Error>(const ScanRef&)>& trouble_of) {
+  std::vector<Replacement> found(listing.twins.size());
+  parallel_for_index(found.size(), 1,
+                     [&](std::size_t i) { found[i] = replacement_of(listing.twins[i], listing.base, trouble_of); });
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    TwinFiles& twins = listing.twins[i];
+    if (found[i].scans.empty()) continue;
+    const std::string bad = name_in(listing.base, twins.taken), good = name_in(listing.base, found[i].file);
+    std::erase(listing.warnings, fmt::format("{}: not used, {} is taken for the same scan", good, bad));
+    listing.warnings.push_back(
+        fmt::format("{}: cannot be used ({}), {} is taken for the same scan", bad, found[i].trouble.what, good));
+    std::erase_if(listing.scans, [&](const ListedScan& s) { return s.scan.path == twins.taken; });
+    const bool listed = std::ranges::any_of(
+        listing.scans, [&](const ListedScan& s) { return s.scan.path == found[i].file; });  // named by the user as well
+    if (!listed) listing.scans.insert(listing.scans.end(), found[i].scans.begin(), found[i].scans.end());
+    std::erase(twins.others, found[i].file);
+    twins.others.insert(twins.others.begin(), std::exchange(twins.taken, found[i].file));
+  }
+  std::sort(listing.warnings.begin(), listing.warnings.end());
+  sort_by_name(listing.scans);
 }
 
 Result<ScanRef> resolve_scan_name(const std::string& text) {

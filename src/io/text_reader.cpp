@@ -9,6 +9,7 @@
 
 #include "io/line_reader.h"
 #include "io/local_origin.h"
+#include "io/notes.h"
 #include "io/wording.h"
 
 namespace isthmus::io {
@@ -88,7 +89,7 @@ Result<void> TextReader::check_end() {
     return fail(fmt::format("the header says {} points, the file holds {}", *block_.num_lines, num_lines_),
                 at_line(file_.name(), lines_.number()), "the file is cut short: export it again");
   }
-  if (num_no_returns_ > 0) header_.notes.push_back(fmt::format("{} no-return lines (0 0 0) left out", num_no_returns_));
+  if (num_no_returns_ > 0) header_.notes.push_back(fmt::format("{}{}", num_no_returns_, kNoReturnNote));
   if (block_.only_points && block_.num_lines && lines_.next_offset() < block_.end_byte) {
     header_.notes.push_back(
         fmt::format("the file goes on behind the {} points of its header (line {}): the rest is ignored",

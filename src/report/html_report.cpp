@@ -165,7 +165,7 @@ std::string links_section(const SurveyRecord& record, const SurveyCounts& c) {
 
 std::string warnings_section(const SurveyRecord& record) {
   std::string items;
-  for (const auto* list : {&record.warnings, &record.solution.warnings})
+  for (const auto* list : {&record.warnings, &record.solution.warnings, &record.run.warnings})
     for (const std::string& warning : *list) items += "<li>" + escaped(warning) + "</li>";
   return items.empty() ? items : "<h2>Warnings</h2><ul class=\"warnings\">" + items + "</ul>";
 }

@@ -39,6 +39,7 @@ Json run_section(const RunRecord& run) {
               {"input", run.input},        {"output", run.output},   {"store", run.store},
               {"threads", run.threads},    {"seconds", run.seconds}, {"peak_memory_bytes", run.peak_memory_bytes},
               {"exit_code", run.exit_code}};
+  out["warnings"] = run.warnings;
   for (const auto& [name, value] : run.more) out[name] = value;
   return out;
 }

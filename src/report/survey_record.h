@@ -52,6 +52,7 @@ struct RunRecord {
   double seconds = 0;
   std::uint64_t peak_memory_bytes = 0;
   int exit_code = 0;
+  std::vector<std::string> warnings;  ///< those that this run alone had: damaged products, a full disk
   std::vector<std::pair<std::string, std::string>> more;  ///< name, value
 };
 

@@ -8,6 +8,7 @@
 
 #include "base/atomic_file.h"
 #include "base/digest.h"
+#include "base/disk_space.h"
 
 namespace isthmus::store {
 namespace {
@@ -64,7 +65,7 @@ Result<Store> Store::open(const std::filesystem::path& folder, OnTrouble on_trou
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
-    return fail("cannot create the store's folder: " + error.message(), folder.string(), "choose another with --store");
+    return tl::unexpected(write_error("the store's folder cannot be created", error.value(), folder));
   }
   return Store(folder, std::move(on_trouble));
 }
@@ -74,6 +75,7 @@ std::filesystem::path Store::path_of(const Key& key) const {
 }
 
 std::optional<std::string> Store::load_payload(const Key& key) const {
+  if (folder_.empty()) return std::nullopt;
   const std::filesystem::path path = path_of(key);
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return std::nullopt;
@@ -89,10 +91,11 @@ std::optional<std::string> Store::load_payload(const Key& key) const {
 }
 
 Result<void> Store::save_payload(const Key& key, const std::string& payload) const {
+  if (folder_.empty()) return {};
   const std::filesystem::path path = path_of(key);
   std::error_code error;
   std::filesystem::create_directories(path.parent_path(), error);
-  if (error) return fail("cannot create a folder: " + error.message(), path.parent_path().string());
+  if (error) return tl::unexpected(write_error("cannot be created", error.value(), path.parent_path()));
   Envelope envelope;
   envelope.key = text_of(key);
   envelope.payload = payload;

@@ -43,6 +43,9 @@ class Store {
   /// Creates the folder if need be; fails when it cannot be written.
   static Result<Store> open(const std::filesystem::path& folder, OnTrouble on_trouble);
 
+  /// A store that keeps nothing and finds nothing.
+  static Store none() { return {{}, {}}; }
+
   /// The artifact, or nothing when there is none or it is damaged (which is reported through OnTrouble).
   template <class T>
   std::optional<T> load(const Key& key) const {

@@ -27,6 +27,7 @@ struct CandidateOptions {
   std::vector<std::string> groups;
   bool only_groups = false;
   std::optional<double> max_distance_m;
+  bool check_units = true;
 };
 const config::OptionTable<CandidateOptions>& candidate_options_table();
 

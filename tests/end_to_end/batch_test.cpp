@@ -37,6 +37,15 @@ TEST_F(Batch, a_wrong_job_file_begins_nothing) {
   EXPECT_FALSE(fs::exists(folder_ / "one"));
 }
 
+TEST_F(Batch, two_jobs_with_one_output_begin_nothing) {
+  make_survey(1);
+  const Said said = run_jobs("- {input: scans, output: one}\n- {input: scans, output: ./one/}\n");
+  EXPECT_EQ(said.exit_code, 2);
+  EXPECT_NE(said.err.find("batch.yaml:2:26: job 2 and job 1 (at "), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("batch.yaml:1) write to the same folder"), std::string::npos) << said.err;
+  EXPECT_FALSE(fs::exists(folder_ / "one"));
+}
+
 TEST_F(Batch, flags_override_every_job) {
   make_survey(1);
   std::ofstream(folder_ / "job.yaml") << "input: scans\noutput: out\nsettings: {sampling: {target_points: 9000}}\n";

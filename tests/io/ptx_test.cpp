@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "io/notes.h"
 #include "io_testing.h"
 
 namespace isthmus::io::testing {
@@ -35,6 +36,7 @@ TEST_F(Ptx, ReadsSeveralScansWithPosesAndDropsNoReturns) {
   const double c = std::cos(M_PI / 6), s = std::sin(M_PI / 6);
   expect_near(*first->header.file_from_scan * Eigen::Vector3d(1, 2, 3), {10 + c - 2 * s, 20 + s + 2 * c, 6}, 1e-5);
   EXPECT_NE(first->header.notes.back().find("2 no-return lines"), std::string::npos);
+  for (const std::string& note : first->header.notes) EXPECT_TRUE(is_matter_of_course(note)) << note;
   for (const ScanRef& ref : {(*scans)[1], ScanRef{path, 1, {}}}) {  // with and without the place known
     const auto second = read_whole(ref);
     ASSERT_TRUE(second) << error_of(second);

@@ -47,8 +47,8 @@ TEST_F(Directory, TakesScansByTheRulesInAFixedOrder) {
   const auto noted = [&](const std::string& text) {
     return std::find(listing->notes.begin(), listing->notes.end(), text) != listing->notes.end();
   };
-  EXPECT_TRUE(noted("b.xyz: not used, b.ply is taken for the same scan"));
-  EXPECT_TRUE(noted("b.laz: not used, b.ply is taken for the same scan"));
+  EXPECT_EQ(listing->warnings, (Strings{"b.laz: not used, b.ply is taken for the same scan",
+                                        "b.xyz: not used, b.ply is taken for the same scan"}));
   EXPECT_TRUE(noted("scans.csv: no coordinates, not taken as a scan"));
   EXPECT_TRUE(noted("readme.txt: no coordinates, not taken as a scan"));
   EXPECT_TRUE(noted("1 files with extension '.yaml' are no scans"));
@@ -73,7 +73,47 @@ TEST_F(Directory, SkipsTheOutputFolderAndNotesLinkedFolders) {
   const auto listing = list_scans({folder}, {folder / "out"});
   ASSERT_TRUE(listing) << error_of(listing);
   EXPECT_EQ(names(*listing), Strings{"a.xyz"});
-  EXPECT_EQ(listing->notes, Strings{"link: a link to a folder, not entered"});
+  EXPECT_EQ(listing->warnings, Strings{"link: a link to a folder, not entered"});
+}
+
+/// Unreadable: whatever holds "broken".
+std::optional<Error> trouble_of(const ScanRef& scan) {
+  std::ifstream file(scan.path);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (text.find("broken") == std::string::npos) return std::nullopt;
+  return Error{"it is broken", scan.path.string(), {}};
+}
+
+TEST_F(Directory, ABrokenFileGivesWayToItsTwin) {
+  write("a.ply", "broken");
+  write("a.xyz", "1 2 3\n");
+  write("b.ply", "good enough");
+  write("b.xyz", "1 2 3\n");
+  write("c.ply", "broken");
+  write("c.pts", "broken");
+  write("c.xyz", "1 2 3\n");
+  write("d.ply", "broken");
+  write("d.xyz", "broken");
+  write("e.ply", "broken");
+  auto listing = list_scans({folder});
+  ASSERT_TRUE(listing) << error_of(listing);
+  EXPECT_EQ(names(*listing), (Strings{"a.ply", "b.ply", "c.ply", "d.ply", "e.ply"}));
+  take_readable_twins(*listing, trouble_of);
+  EXPECT_EQ(names(*listing), (Strings{"a.xyz", "b.ply", "c.xyz", "d.ply", "e.ply"}));
+  EXPECT_EQ(listing->warnings, (Strings{"a.ply: cannot be used (it is broken), a.xyz is taken for the same scan",
+                                        "b.xyz: not used, b.ply is taken for the same scan",
+                                        "c.ply: cannot be used (it is broken), c.xyz is taken for the same scan",
+                                        "c.pts: not used, c.ply is taken for the same scan",
+                                        "d.xyz: not used, d.ply is taken for the same scan"}));
+}
+
+TEST_F(Directory, ATwinThatIsNamedAsWellIsListedOnce) {
+  write("a.ply", "broken");
+  const auto named = write("a.xyz", "1 2 3\n");
+  auto listing = list_scans({folder, named});
+  ASSERT_TRUE(listing) << error_of(listing);
+  take_readable_twins(*listing, trouble_of);
+  EXPECT_EQ(names(*listing), Strings{"a.xyz"});
 }
 
 TEST_F(Directory, MissingInputsFail) {

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "io/notes.h"
 #include "io_testing.h"
 
 namespace isthmus::io::testing {
@@ -32,6 +33,7 @@ TEST_F(Text, DelimitersAndColumnsAreFoundAndStated) {
     const auto scan = read("a.txt", c.text);
     ASSERT_TRUE(scan) << error_of(scan);
     EXPECT_EQ(scan->header.notes[0], c.note);
+    EXPECT_TRUE(is_matter_of_course(scan->header.notes[0])) << c.note;
     ASSERT_EQ(scan->p_in_scan.size(), 2U);
     expect_near(scan->p_in_scan[0], {1, 2, 3}, 0);
     expect_near(scan->p_in_scan[1], {4, 5, 6}, 0);
@@ -71,6 +73,7 @@ TEST_F(Text, PtsCountsItsPoints) {
   EXPECT_EQ(scan->p_in_scan.size(), 2U);
   EXPECT_EQ(scan->chunk.intensity[0], -900.0F);
   EXPECT_NE(scan->header.notes.back().find("goes on behind the 2 points"), std::string::npos);
+  EXPECT_FALSE(is_matter_of_course(scan->header.notes.back()));
   EXPECT_FALSE(scan->header.station_in_scan.has_value());
   EXPECT_NE(error("b.pts", "3\n1 2 3\n4 5 6\n").find("the header says 3 points, the file holds 2"), std::string::npos);
   EXPECT_NE(error("c.pts", "18446744073709551615\n1 2 3\n").find("the header says 18446744073709551615"),

@@ -57,10 +57,20 @@ TEST_F(JobFile, errors_name_file_line_and_column) {
   EXPECT_EQ(error_of("input: a\noutput: b\nprofile: quik\n"),
             "job.yaml:3:10: there is no such configuration file or profile (did you mean quick?)");
   EXPECT_EQ(error_of("input: []\noutput: b\n"), "job.yaml:1:8: 'input' is empty");
-  EXPECT_TRUE(
-      error_of("- {input: a, output: b}\n- {input: c, output: ./b}\n").starts_with("job.yaml:2:3: two jobs write to "));
   EXPECT_EQ(error_of("[]"), "job.yaml: the list of jobs is empty");
   EXPECT_FALSE(read_jobs(folder_ / "missing.yaml"));
+}
+
+TEST_F(JobFile, two_jobs_with_one_output_are_refused_whatever_the_spelling) {
+  std::filesystem::create_directory(folder_ / "b");
+  std::filesystem::create_directory_symlink(folder_ / "b", folder_ / "link");
+  const std::vector<std::string> spellings = {"b", "./b", "b/", "x/../b", "link", (folder_ / "b").string()};
+  for (const std::string& same : spellings) {
+    EXPECT_EQ(error_of("- {input: a, output: z}\n- {input: a, output: b}\n- {input: c, output: " + same + "}\n"),
+              "job.yaml:3:22: job 3 and job 2 (at " + file_.string() + ":2) write to the same folder " +
+                  (folder_ / same).lexically_normal().string() + " (give each job an output of its own)");
+  }
+  EXPECT_TRUE(read("- {input: a, output: b}\n- {input: a, output: b/inner}\n"));
 }
 
 TEST_F(JobFile, a_resolved_job_is_the_same_job) {

@@ -103,6 +103,13 @@ TEST_F(StoreOfSamples, what_cannot_be_kept_is_told_once) {
   EXPECT_NE(damages_[0].find("cannot be kept"), std::string::npos) << damages_[0];
 }
 
+TEST(StoreOfNothing, keeps_nothing_and_complains_about_nothing) {
+  const Store store = Store::none();
+  EXPECT_TRUE(store.save(key_of("x"), full_sample()));
+  store.keep(key_of("x"), full_sample());
+  EXPECT_FALSE(store.load<Sample>(key_of("x")));
+}
+
 TEST(StoreFolder, that_cannot_be_made_is_an_error) { EXPECT_FALSE(Store::open("/proc/no/such/folder", {})); }
 
 }  // namespace

@@ -22,7 +22,8 @@ std::string summary_of(const pipelines::JobResult& result, const pipelines::Job&
   std::string text = fmt::format("{} of {} scans in the largest component, {} links accepted of {} pairs tried",
                                  counts.in_largest, counts.scans, counts.accepted, counts.pairs);
   if (counts.components > 1) text += fmt::format(", {} components", counts.components);
-  if (counts.failed > 0) text += fmt::format(", {} scans unreadable", counts.failed);
+  if (counts.failed > 0)
+    text += fmt::format(", {} {} not usable", counts.failed, counts.failed == 1 ? "scan" : "scans");
   return text + fmt::format("; report: {}", (job.output / "report.html").string());
 }
 

@@ -1,7 +1,12 @@
 // isthmus: stitches terrestrial laser scans into a pose graph.
 #include <fmt/format.h>
+#include <malloc.h>
 #include <CLI/CLI.hpp>
 
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
 #include <exception>
 
 #include "commands.h"
@@ -21,9 +26,20 @@ constexpr const char* kExitCodes =
     "unreadable (pair: not accepted), 2 wrong usage or configuration, 1 failure, 130 or 143 stopped by Ctrl-C or\n"
     "a signal (the same command goes on from there). Messages go to standard error.";
 
+/// glibc raises its threshold for blocks of their own with every large block that is freed, and from then on keeps what
+/// scans and pairs leave behind: a quarter of the peak on 20 scans of 5 million points was such leavings. A fixed
+/// threshold costs 3 % of the time.
+void give_back_large_blocks() {
+  constexpr int kLargeBytes = 1 << 20;
+  mallopt(M_MMAP_THRESHOLD, kLargeBytes);
+  mallopt(M_TRIM_THRESHOLD, kLargeBytes);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  give_back_large_blocks();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the user's limit is an error like a full disk, not the end
   CLI::App app(kAbout, "isthmus");
   app.set_version_flag("--version", fmt::format("isthmus {}", isthmus::kVersion), "Show the version");
   app.set_help_flag("-h,--help", "Show this help; 'isthmus COMMAND --help' shows a command's");
@@ -44,6 +60,11 @@ int main(int argc, char** argv) {
     return asked_for_help ? isthmus::cli::kSuccess : isthmus::cli::kUsage;
   } catch (const std::exception& error) {
     fmt::print(stderr, "isthmus: internal failure: {}\n", error.what());
+    return isthmus::cli::kFailure;
+  }
+  // A pipe or a disk that took only half of the results must not look like success.
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    fmt::print(stderr, "error: standard output: cannot be written: {}\n", std::strerror(errno));
     return isthmus::cli::kFailure;
   }
   return exit_code;

@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include "base/atomic_file.h"
+#include "base/disk_space.h"
 #include "base/rng.h"
+#include "config/describe.h"
 #include "io/scan_writer.h"
 #include "simulate/movers.h"
 #include "simulate/scanner.h"
@@ -16,6 +20,8 @@
 
 namespace isthmus {
 namespace {
+
+namespace fs = std::filesystem;
 
 using sim::RayScene;
 using sim::Scene;
@@ -148,6 +154,12 @@ Result<Place> make_foreign_place(int k, const SimulateOptions& o) {
   return make_place(kind, {1, sim::default_spacing_m(kind), seed});
 }
 
+constexpr const char* kRecord = "simulation.yaml";
+
+std::string scan_file(std::size_t number, const SimulateOptions& o) {
+  return fmt::format("scan_{:03}.{}", number, o.format);
+}
+
 /// One scan on disk and the truth about it.
 struct WrittenScan {
   SimulatedScan scan;
@@ -162,13 +174,66 @@ Result<WrittenScan> write_scan_of(const Place& place, const Vector3d& centre, st
   if (!points) return tl::unexpected(points.error());
   const sim::Grid grid = sim::grid_of(o.resolution_deg * kRadPerDeg);
   WrittenScan written;
-  written.scan.name = fmt::format("scan_{:03}.{}", number, o.format);
+  written.scan.name = scan_file(number, o);
   written.scan.num_rays = static_cast<std::uint64_t>(grid.rows) * static_cast<std::uint64_t>(grid.columns);
   written.scan.num_points = points->points.size();
   written.pose = pose_line(written.scan.name, station);
   const Result<void> done = io::write_scan(std::filesystem::path(o.output) / written.scan.name, *points);
   if (!done) return tl::unexpected(done.error());
   return written;
+}
+
+/// The files that an earlier simulation says in its record it made here.
+Result<std::vector<fs::path>> files_of_record(const fs::path& folder) {
+  const Result<std::string> text = read_file(folder / kRecord);
+  if (!text) return tl::unexpected(text.error());
+  std::vector<fs::path> files;
+  std::istringstream lines(*text);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("  - ")) continue;
+    const fs::path name = line.substr(4);
+    std::error_code error;
+    const bool is_ours = name == name.filename() && !fs::is_directory(folder / name, error);
+    if (is_ours) files.push_back(folder / name);
+  }
+  return files;
+}
+
+/// A simulation makes a folder of its own: what it made there before goes, and what somebody else put there is not
+/// touched, since its scans would pass for scans of this survey.
+Result<void> make_room(const fs::path& folder) {
+  std::error_code error;
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
+    return fail("is a file, a folder is wanted", folder.string(), "name a new folder with -o");
+  }
+  fs::create_directories(folder, error);
+  if (error) return tl::unexpected(write_error("the folder cannot be created", error.value(), folder));
+  if (fs::is_empty(folder, error)) return {};
+  if (!fs::exists(folder / kRecord, error)) {
+    return fail("the folder is not empty and was not made by simulate", folder.string(),
+                "name a new folder with -o, or empty this one");
+  }
+  const Result<std::vector<fs::path>> files = files_of_record(folder);
+  if (!files) return tl::unexpected(files.error());
+  for (const fs::path& file : *files) {
+    fs::remove(file, error);
+    if (error)
+      return tl::unexpected(write_error("an earlier simulation's file cannot be removed", error.value(), file));
+  }
+  return {};
+}
+
+/// What the folder was made by, and which files are the simulation's: a later one replaces those and no others.
+Result<void> write_record(const SimulateOptions& o, std::size_t num_scans) {
+  SimulateOptions options = o;
+  options.output.clear();  // the record does not depend on where it lies
+  std::string text =
+      "# Made by 'isthmus simulate'; a later simulation into this folder replaces the files listed here.\n";
+  const std::array<config::Stage, 1> stages = {config::bind(simulate_options_table(), options)};
+  text += config::values_yaml(stages);
+  text += "files:\n  - poses.gt.txt\n  - foreign.txt\n";
+  for (std::size_t k = 0; k < num_scans; ++k) text += fmt::format("  - {}\n", scan_file(k, o));
+  return write_file_atomically(fs::path(o.output) / kRecord, text);
 }
 
 Result<void> write_truth(const SimulateOptions& o, const std::string& poses, const std::string& foreign_names) {
@@ -181,9 +246,7 @@ Result<void> write_truth(const SimulateOptions& o, const std::string& poses, con
 
 Result<SimulationSummary> simulate(const SimulateOptions& o, const SimulationProgress& progress) {
   if (const Result<void> good = check(o); !good) return tl::unexpected(good.error());
-  std::error_code error;
-  std::filesystem::create_directories(o.output, error);
-  if (error) return fail("cannot create the folder: " + error.message(), o.output);
+  if (const Result<void> room = make_room(o.output); !room) return tl::unexpected(room.error());
 
   SimulationSummary summary;
   summary.spacing_m = o.spacing_m.value_or(sim::default_spacing_m(o.scene));
@@ -195,6 +258,7 @@ Result<SimulationSummary> simulate(const SimulateOptions& o, const SimulationPro
   std::string poses, foreign_names;
   int num_foreign = 0;
   const std::vector<bool> is_foreign = scatter_foreign(o.stations, o.foreign, seed);
+  if (const Result<void> done = write_record(o, is_foreign.size()); !done) return tl::unexpected(done.error());
   for (std::size_t k = 0; k < is_foreign.size(); ++k) {
     Result<WrittenScan> written;
     if (is_foreign[k]) {

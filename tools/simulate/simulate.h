@@ -2,7 +2,8 @@
 //
 // Writes scan_000.ply ... (x y z intensity, each in the scanner's own frame with the station at the
 // origin), poses.gt.txt (name r00 r01 r02 tx ... tz, scan -> common, metres) and, when asked, foreign.txt: scans of
-// other places. Theory, sources and examples: docs/simulate.md.
+// other places; and simulation.yaml, the options and the names of these files. Theory, sources and examples:
+// docs/simulate.md.
 #pragma once
 
 #include <cstdint>
@@ -57,9 +58,10 @@ struct SimulationSummary {
 /// Called after each scan is on disk, in the order of the scans, from the calling thread.
 using SimulationProgress = std::function<void(const SimulatedScan& scan, std::size_t done, std::size_t total)>;
 
-/// Same options, same bytes, for any number of threads (TBB loops in the caller's arena). Creates the output folder;
-/// fails if an option is outside its table's range, if a place for a station cannot be found, or on the first file it
-/// cannot write.
+/// Same options, same bytes, for any number of threads (TBB loops in the caller's arena). Creates the output folder.
+/// What an earlier simulation made in it is removed first; a folder that holds something and was not made by a
+/// simulation is refused. Fails if an option is outside its table's range, if a place for a station cannot be found, or
+/// on the first file it cannot write.
 Result<SimulationSummary> simulate(const SimulateOptions& options, const SimulationProgress& progress = {});
 
 }  // namespace isthmus

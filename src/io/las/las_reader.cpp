@@ -9,6 +9,7 @@
 #include <cstring>
 #include <utility>
 
+#include "io/notes.h"
 #include "io/record_reader.h"
 #include "io/wording.h"
 
@@ -145,7 +146,7 @@ OpenedScan open_las(const ScanRef& scan) {
   if (auto good = check(*las, file->name()); !good) return tl::unexpected(std::move(good.error()));
   ScanHeader header;
   header.format = "las";
-  header.notes.push_back(fmt::format("LAS {}.{}, point format {}", las->major, las->minor, las->format));
+  header.notes.push_back(fmt::format("{}{}.{}, point format {}", kLasNote, las->major, las->minor, las->format));
   return open_records(std::move(*file), std::move(header), layout_of(*las), {las->points_begin, las->num_points});
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "io/line_reader.h"
+#include "io/notes.h"
 #include "io/text/guess_columns.h"
 #include "io/text_columns.h"
 #include "io/text_number.h"
@@ -155,7 +156,7 @@ OpenedScan open_ptx(const ScanRef& scan) {
   header.has_intensity = guess.columns.has(FieldRole::intensity);
   header.has_colour = guess.columns.has_colour();
   header.file_from_scan = rigid(ptx->row_vector_pose);
-  header.notes.push_back(fmt::format("grid of {} columns and {} rows; {}", ptx->columns, ptx->rows, guess.note));
+  header.notes.push_back(fmt::format("{}{} columns and {} rows; {}", kGridNote, ptx->columns, ptx->rows, guess.note));
   if (!header.file_from_scan) header.notes.push_back("the stored 4x4 matrix is not rigid: no pose taken");
   return open_text(std::move(*file), std::move(header), column_parser(guess.columns), block);
 }

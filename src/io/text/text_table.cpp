@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "io/line_reader.h"
+#include "io/notes.h"
 #include "io/text/guess_columns.h"
 #include "io/text_number.h"
 #include "io/wording.h"
@@ -163,7 +164,8 @@ Result<TextTable> detect_table(InputFile& file) {
   if (!named) table.columns.roles = guess.columns.roles;
   table.columns.delimiter = delimiter;
   if (named && table.columns.has_colour()) table.columns.colour_scale = guess_colour_scale(*sample, table.columns);
-  table.note += named ? describe(table.columns) + " by their names" : guess.note + " by their values";
+  table.note += named ? fmt::format("{}{}", describe(table.columns), kByNamesNote)
+                      : fmt::format("{}{}", guess.note, kByValuesNote);
   return table;
 }
 

@@ -54,6 +54,21 @@ class PairCommand : public ::testing::Test {
   }
   std::string scan(const std::string& name) const { return (scans_ / name).string(); }
 
+  /// Whatever became of the pair.
+  static void expect_every_key(const Json& json) {
+    for (const char* key :
+         {"verdict", "reason", "probability", "overlap", "overlap_of_source", "overlap_of_target", "rms_m", "voxel_m",
+          "transform", "information", "evidence", "counts", "from_store", "seconds"}) {
+      EXPECT_TRUE(json.contains(key)) << key;
+    }
+    EXPECT_EQ(json.size(), 14U) << json;
+    EXPECT_TRUE(json["evidence"].contains("score")) << json["evidence"];
+    EXPECT_TRUE(json["seconds"].is_object());
+    EXPECT_EQ(json["transform"].is_null(), json["information"].is_null());
+    EXPECT_EQ(json["transform"].is_null(), json["overlap"].is_null());
+    EXPECT_EQ(json["transform"].is_null(), json["evidence"]["score"].is_null());
+  }
+
   static void expect_near(const Transform& a, const Transform& b, double metres) {
     EXPECT_LT(rotation_angle_rad(a.linear().transpose() * b.linear()), 0.005);
     EXPECT_LT((a.translation() - b.translation()).norm(), metres);
@@ -66,10 +81,7 @@ TEST_F(PairCommand, finds_the_pose_and_prints_one_json_object) {
   ASSERT_EQ(said.exit_code, 0) << said.err;
   const Json json = Json::parse(said.out);
   EXPECT_EQ(json["verdict"], "accepted");
-  for (const char* key :
-       {"reason", "probability", "overlap", "rms_m", "transform", "information", "evidence", "seconds"}) {
-    EXPECT_TRUE(json.contains(key)) << key;
-  }
+  expect_every_key(json);
   std::ifstream in(file);
   const Transform found = transform_of(in, 16);
   expect_near(found, target_from_source_, 0.05);
@@ -117,11 +129,57 @@ TEST_F(PairCommand, is_1_for_an_unreadable_scan_and_still_prints_one_object) {
   std::ofstream(folder_ / "bad.ply") << "ply\nformat nonsense 1.0\n";
   const std::string file = (folder_ / "T.txt").string();
   for (const std::string& bad : {(folder_ / "bad.ply").string(), (folder_ / "missing.ply").string()}) {
+    std::ofstream(file) << "of an earlier run\n";
     const testing::Said said = pair({bad, scan("scan_000.ply"), "-o", file});
     EXPECT_EQ(said.exit_code, 1);
-    EXPECT_EQ(Json::parse(said.out)["verdict"], "failed");
-    EXPECT_NE(said.err.find(bad), std::string::npos) << said.err;
+    const Json json = Json::parse(said.out);
+    expect_every_key(json);
+    EXPECT_EQ(json["verdict"], "failed");
+    EXPECT_EQ(json["probability"], 0);
+    EXPECT_TRUE(json["transform"].is_null());
+    EXPECT_NE(said.err.find(fs::path(bad).filename().string()), std::string::npos) << said.err;
+    EXPECT_FALSE(fs::exists(file)) << "a matrix of an earlier run passes for this one's";
   }
+}
+
+TEST_F(PairCommand, refuses_to_write_over_a_scan_or_into_nowhere) {
+  const std::string source = scan("scan_001.ply"), target = scan("scan_000.ply");
+  EXPECT_EQ(pair({source, target, "-o", source}).exit_code, 2);
+  EXPECT_EQ(pair({source, target, "-o", target}).exit_code, 2);
+  EXPECT_TRUE(fs::exists(source) && fs::exists(target));
+  for (const std::string& file : {(folder_ / "no" / "folder.txt").string(), scans_.string()}) {
+    const testing::Said said = pair({source, target, "-o", file});
+    EXPECT_EQ(said.exit_code, 1);
+    expect_every_key(Json::parse(said.out));
+    EXPECT_NE(said.err.find(file), std::string::npos) << said.err;
+  }
+}
+
+TEST_F(PairCommand, needs_no_folder_for_what_it_computes_in_between) {
+  std::ofstream(folder_ / "file") << "no folder";
+  const std::string file = (folder_ / "file").string();
+  ASSERT_EQ(::setenv("TMPDIR", file.c_str(), 1), 0);
+  const testing::Said said = pair({scan("scan_001.ply"), scan("scan_000.ply")});
+  ::unsetenv("TMPDIR");
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+}
+
+TEST_F(PairCommand, scans_in_different_units_are_a_failed_pair_that_says_why) {
+  const auto reader = io::open_scan({scans_ / "scan_001.ply", 0, "scan_001.ply"}).value();
+  PointChunk all;
+  ASSERT_TRUE(reader->read(all, 10'000'000));
+  for (Eigen::Vector3f& p : all.points) p *= 1000;
+  ASSERT_TRUE(io::write_scan(folder_ / "millimetres.ply", all));
+  const std::string file = (folder_ / "T.txt").string();
+  std::ofstream(file) << "of an earlier run\n";
+  const testing::Said said = pair({(folder_ / "millimetres.ply").string(), scan("scan_000.ply"), "-o", file});
+  EXPECT_EQ(said.exit_code, 3) << said.err;
+  const Json json = Json::parse(said.out);
+  expect_every_key(json);
+  EXPECT_EQ(json["verdict"], "failed");
+  const std::string reason = json["reason"];
+  EXPECT_NE(reason.find("millimetres.ply: its extent is "), std::string::npos) << reason;
+  EXPECT_NE(reason.find("looks like millimetres among metres"), std::string::npos) << reason;
   EXPECT_FALSE(fs::exists(file));
 }
 
@@ -140,6 +198,7 @@ TEST_F(PairCommand, is_3_when_nothing_is_to_be_found) {
   sphere.close();
   const testing::Said said = pair({(folder_ / "plane.xyz").string(), (folder_ / "sphere.xyz").string()});
   EXPECT_EQ(said.exit_code, 3) << said.out << said.err;
+  expect_every_key(Json::parse(said.out));
   EXPECT_NE(Json::parse(said.out)["verdict"], "accepted");
 }
 

@@ -134,9 +134,55 @@ TEST_F(Simulate, SameBytesForOneAndTwoThreads) {
       return files;
     };
     const auto one = run(1), two = run(2);
-    EXPECT_EQ(one.size(), 6U);
+    EXPECT_EQ(one.size(), 7U);
     EXPECT_EQ(one, two) << scene;
   }
+}
+
+std::set<std::string> names_in(const fs::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename());
+  return names;
+}
+
+TEST_F(Simulate, ReplacesItsOwnEarlierScansAndNothingElse) {
+  SimulateOptions o = options("tunnel", 4, 10);
+  o.foreign = 1;
+  ASSERT_TRUE(simulate(o));
+  const fs::path folder = o.output;
+  fs::create_directories(folder / "out");
+  ASSERT_TRUE(write_file_atomically(folder / "notes.txt", "mine"));
+  ASSERT_TRUE(write_file_atomically(folder / "scan_900.ply", "mine, too"));
+  o.foreign = 0;
+  o.stations = 2;
+  o.format = "xyz";
+  const auto again = simulate(o);
+  ASSERT_TRUE(again) << again.error().text();
+  EXPECT_EQ(names_in(folder), (std::set<std::string>{"scan_000.xyz", "scan_001.xyz", "poses.gt.txt", "simulation.yaml",
+                                                     "out", "notes.txt", "scan_900.ply"}));
+}
+
+TEST_F(Simulate, RefusesAFolderThatHoldsSomethingElse) {
+  const SimulateOptions o = options("tunnel", 2, 10);
+  fs::create_directories(o.output);
+  const std::set<std::string> mine = {"scan_000.ply", "scan_007.ply", "poses.gt.txt"};
+  for (const std::string& name : mine) ASSERT_TRUE(write_file_atomically(fs::path(o.output) / name, "measured"));
+  const auto refused = simulate(o);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().text(), o.output +
+                                        ": the folder is not empty and was not made by simulate (name a new "
+                                        "folder with -o, or empty this one)");
+  EXPECT_EQ(names_in(o.output), mine);
+  EXPECT_EQ(read_file(fs::path(o.output) / "scan_000.ply").value(), "measured");
+}
+
+TEST_F(Simulate, AHandMadeRecordRemovesNothingOutsideTheFolder) {
+  const SimulateOptions o = options("tunnel", 2, 10);
+  fs::create_directories(o.output);
+  ASSERT_TRUE(write_file_atomically(folder_ / "precious", "x"));
+  ASSERT_TRUE(write_file_atomically(fs::path(o.output) / "simulation.yaml", "files:\n  - ../precious\n  - ..\n"));
+  EXPECT_TRUE(simulate(o));
+  EXPECT_TRUE(fs::exists(folder_ / "precious"));
 }
 
 TEST_F(Simulate, ForeignScansAreNamedAndHaveNoPose) {

@@ -97,7 +97,7 @@ E57Limits limits_of(const pugi::xml_node& limits, const std::string& quantity) {
 std::string joined(const pugi::xml_node& node, std::initializer_list<const char*> names) {
   std::string all;
   for (const char* name : names) {
-    const std::string_view text = node.child_value(name);
+    const std::string text = e57_text(node.child(name));
     if (!text.empty()) all.append(all.empty() ? "" : " ").append(text);
   }
   return all;
@@ -141,8 +141,8 @@ Result<E57Scan> e57_scan(const std::string& xml, int index, const std::string& f
   }
   const std::string where = at_e57_scan(file, index);
   E57Scan scan;
-  scan.guid = node.child_value("guid");
-  scan.name = node.child_value("name");
+  scan.guid = e57_text(node.child("guid"));
+  scan.name = e57_text(node.child("name"));
   scan.sensor = joined(node, {"sensorVendor", "sensorModel"});
   scan.file_from_scan = e57_pose(node.child("pose"));
   if (node.child("pose") && !scan.file_from_scan) {

@@ -35,6 +35,14 @@ Result<void> parse_e57_xml(const std::string& xml, const std::string& file, bool
   return {};
 }
 
+std::string e57_text(const pugi::xml_node& node) {
+  std::string text;
+  for (const pugi::xml_node& piece : node.children()) {
+    if (piece.type() == pugi::node_pcdata || piece.type() == pugi::node_cdata) text += piece.value();
+  }
+  return text;
+}
+
 std::optional<double> e57_number(const pugi::xml_node& node) {
   if (!node) return std::nullopt;
   const std::string_view text = text_of(node);

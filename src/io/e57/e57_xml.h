@@ -14,6 +14,9 @@ namespace isthmus::io {
 Result<void> parse_e57_xml(const std::string& xml, const std::string& file, bool keep_all,
                            pugi::xml_document& document);
 
+/// The text in a node: all pieces of it, also those in CDATA.
+std::string e57_text(const pugi::xml_node& node);
+
 /// The number in an Integer, ScaledInteger or Float node; an empty node is 0, as the format has it. Nothing if the node
 /// is missing or holds no number.
 std::optional<double> e57_number(const pugi::xml_node& node);

@@ -32,6 +32,15 @@ void move_images(const pugi::xml_node& root, const std::string& scan_guid, const
   }
 }
 
+void leave_out(pugi::xml_node root, const pugi::xml_node& scan) {
+  const std::string guid = e57_text(scan.child("guid"));
+  for (const pugi::xml_node& image : elements(root.child("images2D"))) {
+    if (guid.empty() || guid != e57_text(image.child("associatedData3DGuid"))) continue;
+    root.child("images2D").remove_child(image);
+  }
+  root.child("data3D").remove_child(scan);
+}
+
 // Another file, another guid.
 void change_guid(pugi::xml_node root, const std::vector<std::optional<Transform>>& poses) {
   Digest digest;
@@ -50,7 +59,7 @@ bool refers_behind_xml(const pugi::xml_document& document, const E57File& file) 
 }
 
 Result<std::string> with_poses(const E57File& file, const std::vector<std::optional<Transform>>& poses,
-                               pugi::xml_document& document) {
+                               ScansWithoutPose without, pugi::xml_document& document) {
   if (auto parsed = parse_e57_xml(file.xml, file.pages.name(), true, document); !parsed) {
     return tl::unexpected(std::move(parsed.error()));
   }
@@ -60,7 +69,10 @@ Result<std::string> with_poses(const E57File& file, const std::vector<std::optio
     return fail(fmt::format("{} poses for {} scans", poses.size(), scans.size()), file.pages.name());
   }
   for (std::size_t k = 0; k < scans.size(); ++k) {
-    if (!poses[k]) continue;
+    if (!poses[k]) {
+      if (without == ScansWithoutPose::left_out) leave_out(root, scans[k]);
+      continue;
+    }
     const Transform old = e57_pose(scans[k].child("pose")).value_or(Transform::Identity());
     move_images(root, e57_text(scans[k].child("guid")), *poses[k] * old.inverse());
     set_e57_pose(scans[k], *poses[k]);
@@ -72,11 +84,12 @@ Result<std::string> with_poses(const E57File& file, const std::vector<std::optio
 }  // namespace
 
 Result<void> copy_e57_with_poses(const std::filesystem::path& from, const std::filesystem::path& to,
-                                 const std::vector<std::optional<Transform>>& file_from_scan) {
+                                 const std::vector<std::optional<Transform>>& file_from_scan,
+                                 ScansWithoutPose without) {
   auto file = open_e57_file(from);
   if (!file) return tl::unexpected(std::move(file.error()));
   pugi::xml_document document;
-  const auto xml = with_poses(*file, file_from_scan, document);
+  const auto xml = with_poses(*file, file_from_scan, without, document);
   if (!xml) return tl::unexpected(xml.error());
   // An XML section at the end is replaced; elsewhere the old one stays as bytes that nothing refers to.
   const std::uint64_t end =

@@ -163,6 +163,11 @@ TEST_F(E57Writing, PosesAreReplacedWhileThePointsStayBitForBit) {
   // The image stood where the scanner stood, and still does.
   const std::size_t image = after.find("images2D");
   EXPECT_NE(after.find("<x type=\"Float\">10</x>", image), std::string::npos) << after.substr(image, 1000);
+  const auto fewer = folder / "fewer.e57";
+  ASSERT_TRUE(copy_e57_with_poses(from, fewer, {std::nullopt, second, std::nullopt}, ScansWithoutPose::left_out));
+  ASSERT_EQ(scans_of_file(fewer)->size(), 1U);
+  EXPECT_EQ(read_whole(fewer)->p_in_scan[0], Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(bytes_of_file(fewer).find("associatedData3DGuid"), std::string::npos);  // its scan is not there
   ASSERT_TRUE(copy_e57_with_poses(to, to, {first, second, std::nullopt}));
   EXPECT_TRUE(read_whole(ScanRef{to, 2, {}}));
   EXPECT_NE(error_of(copy_e57_with_poses(from, to, {first})).find("1 poses for 3 scans"), std::string::npos);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "io/e57/e57_reader.h"
 #include "io/kitti/kitti_reader.h"
 #include "io/las/las_reader.h"
 #include "io/obj/obj_reader.h"
@@ -16,7 +17,8 @@
 namespace isthmus::io {
 namespace {
 
-constexpr std::array<Format, 9> kFormats = {{
+constexpr std::array<Format, 10> kFormats = {{
+    {"e57", "e57", "ASTM E57: scans with their poses, several in a file", open_e57, scans_of_e57},
     {"ptx", "ptx", "Leica PTX: gridded scans with their poses, several in a file", open_ptx, scans_of_ptx},
     {"ply", "ply", "Stanford polygon file: ascii, binary little and big endian", open_ply},
     {"pcd", "pcd", "PCL point cloud data: ascii, binary, binary_compressed", open_pcd},
@@ -29,7 +31,7 @@ constexpr std::array<Format, 9> kFormats = {{
 }};
 
 constexpr std::string_view kUnsupported =
-    "e57 laz fls fws zfs zfc rxp rdbx rdb ptg ptb ptz rcs rcp lgs lgsx pod clr cl3 x3a imp";
+    "laz fls fws zfs zfc rxp rdbx rdb ptg ptb ptz rcs rcp lgs lgsx pod clr cl3 x3a imp";
 
 std::string extension_of(const std::filesystem::path& path) {
   const std::string extension = path.extension().string();

@@ -26,7 +26,7 @@ Result<const Format*> format_of(const std::filesystem::path& path);
 /// Place of the path's extension in that order, smaller is preferred; formats that cannot be read come last.
 std::size_t preference_of(const std::filesystem::path& path);
 
-/// The extension belongs to a scan format, though one we cannot read (E57, LAZ, makers' own formats).
+/// The extension belongs to a scan format, though one we cannot read (LAZ, makers' own formats).
 bool is_known_but_unsupported(const std::filesystem::path& path);
 
 /// Opens the scan with its probing side.

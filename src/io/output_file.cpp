@@ -51,6 +51,17 @@ Result<void> OutputFile::write(std::string_view bytes) {
   return {};
 }
 
+Result<void> OutputFile::overwrite(std::uint64_t offset, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t done = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (done < 0 && errno == EINTR) continue;
+    if (done < 0) return system_failure("written");
+    bytes.remove_prefix(static_cast<std::size_t>(done));
+    offset += static_cast<std::uint64_t>(done);
+  }
+  return {};
+}
+
 Result<void> OutputFile::publish() {
   if (::fsync(descriptor_) != 0) return system_failure("written");
   if (::rename(temporary_.c_str(), path_.c_str()) != 0) return system_failure("renamed");

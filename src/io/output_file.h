@@ -1,6 +1,7 @@
 // A file written in pieces that appears by rename when it is whole.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -19,6 +20,8 @@ class OutputFile {
   ~OutputFile();
 
   Result<void> write(std::string_view bytes);
+  /// Replaces bytes written before; what follows is appended behind the last byte as before.
+  Result<void> overwrite(std::uint64_t offset, std::string_view bytes);
   Result<void> publish();
 
  private:

@@ -46,7 +46,7 @@ class ScanReader {
   virtual Result<void> read(PointChunk& chunk, std::size_t max_points) = 0;
 };
 
-/// The scans of one file (several for PTX), from headers alone where the format allows.
+/// The scans of one file (several for E57 and PTX), from headers alone where the format allows.
 Result<std::vector<ScanRef>> scans_of_file(const std::filesystem::path& path);
 
 Result<std::unique_ptr<ScanReader>> open_scan(const ScanRef& scan);

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <utility>
 
+#include "io/e57/e57_writer.h"
 #include "io/output_file.h"
 #include "io/wording.h"
 
@@ -101,17 +102,29 @@ Result<void> check(const std::filesystem::path& path, const PointChunk& points) 
   return {};
 }
 
+Result<void> write_e57(const std::filesystem::path& path, const PointChunk& points, const Shape& shape,
+                       const WriteOptions& options) {
+  auto writer = E57Writer::create(path);
+  if (!writer) return tl::unexpected(std::move(writer.error()));
+  const E57ScanInfo info = {path.stem().string(), {},          options.file_from_scan, shape.doubles,
+                            shape.intensity,      shape.colour};
+  if (auto begun = writer->begin_scan(info); !begun) return begun;
+  if (auto added = writer->add(points, options.local_origin_in_scan); !added) return added;
+  return writer->publish();
+}
+
 }  // namespace
 
 Result<void> write_scan(const std::filesystem::path& path, const PointChunk& points, const WriteOptions& options) {
   if (auto fits = check(path, points); !fits) return fits;
   const std::string extension = lower_case(path.extension().string());
   const bool is_ply = extension == ".ply", is_pcd = extension == ".pcd";
-  if (!is_ply && !is_pcd && extension != ".xyz") {
-    return fail("scans cannot be written as " + in_quotes(extension), path.string(), "writable: .ply .pcd .xyz");
+  if (!is_ply && !is_pcd && extension != ".e57" && extension != ".xyz") {
+    return fail("scans cannot be written as " + in_quotes(extension), path.string(), "writable: .ply .pcd .e57 .xyz");
   }
   const bool shifted = !options.local_origin_in_scan.isZero(0.0);
   const Shape shape = {options.double_coordinates.value_or(shifted), !points.intensity.empty(), !points.colour.empty()};
+  if (extension == ".e57") return write_e57(path, points, shape, options);
   auto file = OutputFile::create(path);
   if (!file) return tl::unexpected(std::move(file.error()));
   const std::size_t total = points.points.size();

@@ -16,7 +16,7 @@ struct ScanHeader {
   std::string format;                       ///< "ply", "pcd", "ptx", ...
   std::optional<std::uint64_t> num_points;  ///< by the file's own header
   Eigen::Vector3d local_origin_in_scan = Eigen::Vector3d::Zero();
-  std::optional<Eigen::Vector3d> station_in_scan;  ///< where the file says the scanner stood (PCD VIEWPOINT, PTX: zero)
+  std::optional<Eigen::Vector3d> station_in_scan;  ///< where the file says the scanner stood (PCD; E57, PTX: zero)
   std::optional<Transform> file_from_scan;         ///< the registered pose the file stores for the scan, if any
   bool has_intensity = false;
   bool has_colour = false;

@@ -1,12 +1,14 @@
 // How fast files are read, one core, from the page cache. Files are written to a temporary folder first.
 #include <benchmark/benchmark.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 
+#include "e57_testing.h"
 #include "io/scan_reader.h"
 #include "io/scan_writer.h"
 
@@ -55,6 +57,37 @@ void write_las(const fs::path& path, const PointChunk& points) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
+// What scanners write: 22 bits of a tenth of a millimetre an axis, whether the point is valid, 12 bits of intensity.
+void write_e57_integers(const fs::path& path, const PointChunk& points) {
+  constexpr double kScale = 0.0001;
+  constexpr std::int64_t kLimit = (1 << 21) - 1;
+  std::string prototype, packets;
+  for (const std::string& axis : testing::kXyz) {
+    prototype +=
+        testing::field_xml(axis, R"(type="ScaledInteger" minimum="-2097151" maximum="2097151" scale="0.0001")");
+  }
+  prototype += testing::field_xml("cartesianInvalidState", R"(type="Integer" minimum="0" maximum="2")") +
+               testing::field_xml("intensity", R"(type="Integer" minimum="0" maximum="4095")");
+  constexpr std::size_t kPerPacket = 6000;
+  for (std::size_t begin = 0; begin < points.points.size(); begin += kPerPacket) {
+    std::array<std::vector<std::uint64_t>, 5> stored;
+    for (std::size_t i = begin; i < std::min(points.points.size(), begin + kPerPacket); ++i) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double value = points.points[i][static_cast<Eigen::Index>(axis)];
+        stored[axis].push_back(static_cast<std::uint64_t>(std::llround(value / kScale) + kLimit));
+      }
+      stored[3].push_back(0);
+      stored[4].push_back(i % 4096);
+    }
+    packets += testing::data_packet({testing::packed(stored[0], 22), testing::packed(stored[1], 22),
+                                     testing::packed(stored[2], 22), testing::packed(stored[3], 2),
+                                     testing::packed(stored[4], 12)});
+  }
+  testing::HandMadeE57 e57;
+  e57.add_scan(points.points.size(), prototype, packets);
+  std::ofstream(path, std::ios::binary) << e57.file();
+}
+
 /// The files, in a folder that goes away with the program.
 struct Files {
   fs::path folder;
@@ -62,10 +95,11 @@ struct Files {
     std::string pattern = (fs::temp_directory_path() / "isthmus_bench_XXXXXX").string();
     folder = ::mkdtemp(pattern.data());
     const PointChunk points = some_points();
-    for (const char* name : {"a.ply", "a.pcd", "a.xyz"}) {
+    for (const char* name : {"a.ply", "a.pcd", "a.e57", "a.xyz"}) {
       if (!write_scan(folder / name, points)) std::abort();
     }
     write_las(folder / "a.las", points);
+    write_e57_integers(folder / "integers.e57", points);
     std::ofstream(folder / "a.pts") << kPoints << "\n" << std::ifstream(folder / "a.xyz").rdbuf();
   }
   ~Files() { fs::remove_all(folder); }
@@ -97,9 +131,12 @@ void probe(benchmark::State& state, const char* name) {
 BENCHMARK_CAPTURE(read_all, ply, "a.ply")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(read_all, pcd, "a.pcd")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(read_all, las, "a.las")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read_all, e57, "a.e57")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(read_all, e57_integers, "integers.e57")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(read_all, xyz, "a.xyz")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(read_all, pts, "a.pts")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(probe, ply, "a.ply")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(probe, e57, "a.e57")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(probe, xyz, "a.xyz")->Unit(benchmark::kMillisecond);
 
 }  // namespace

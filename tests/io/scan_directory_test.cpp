@@ -36,12 +36,12 @@ TEST_F(Directory, TakesScansByTheRulesInAFixedOrder) {
   write("scans.csv", "id,name,points\n0,a,3\n");
   write("readme.txt", "Seven stations.\n");
   write("points.csv", "x,y,z\n1,2,3\n");
-  write("lone.e57", "ASTM-E57");
+  write("lone.fls", "FARO");
   write("b.laz", "LASF");
   write("two.ptx", kPtx + kPtx);
   const auto listing = list_scans({folder});
   ASSERT_TRUE(listing) << error_of(listing);
-  EXPECT_EQ(names(*listing), (Strings{"a%20scan.xyz", "b.ply", "d.XYZ", "lone.e57 !", "odd%231%25.xyz", "points.csv",
+  EXPECT_EQ(names(*listing), (Strings{"a%20scan.xyz", "b.ply", "d.XYZ", "lone.fls !", "odd%231%25.xyz", "points.csv",
                                       "s10.xyz", "s2.txt", "sub/c.xyz", "two.ptx#0", "two.ptx#1"}));
   EXPECT_NE(listing->scans[3].error->text().find("unsupported format"), std::string::npos);
   const auto noted = [&](const std::string& text) {

@@ -11,6 +11,7 @@ void add_pair(CLI::App& app, int& exit_code);
 void add_inspect(CLI::App& app, int& exit_code);
 void add_simulate(CLI::App& app, int& exit_code);
 void add_evaluate(CLI::App& app, int& exit_code);
+void add_export(CLI::App& app, int& exit_code);
 void add_config(CLI::App& app, int& exit_code);
 
 }  // namespace isthmus::cli

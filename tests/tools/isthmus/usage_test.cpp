@@ -22,7 +22,7 @@ TEST_F(Usage, help_and_version_go_to_standard_output) {
   EXPECT_NE(help.out.find("isthmus register scans/ -o out/"), std::string::npos);
   EXPECT_EQ(help.err, "");
   EXPECT_EQ(run({"--version"}).out, "isthmus 0.1.0\n");
-  for (const std::string command : {"register", "run", "pair", "inspect", "simulate", "evaluate", "config"}) {
+  for (const std::string command : {"register", "run", "pair", "inspect", "simulate", "evaluate", "export", "config"}) {
     const testing::Said said = run({command, "--help"});
     EXPECT_EQ(said.exit_code, 0) << command;
     EXPECT_NE(said.out.find("Usage: isthmus " + command), std::string::npos) << said.out;
@@ -49,6 +49,8 @@ TEST_F(Usage, wrong_usage_is_2_and_silent_on_standard_output) {
       {"simulate", "office"},
       {"simulate", "office", "-o", path("x"), "--stations", "many"},
       {"evaluate", "out"},
+      {"export", "out"},
+      {"export", "out", "--poses", "nonsense"},
       {"config"},
       {"config", "explain", "sampling.nothing"},
   };

@@ -1,0 +1,91 @@
+#include "pipelines/e57_export.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "io/e57/e57_poses.h"
+#include "io/e57/e57_writer.h"
+#include "io/wording.h"
+
+namespace isthmus::pipelines {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kChunkPoints = std::size_t{1} << 16;
+
+Result<void> append_scan(io::E57Writer& writer, const PlacedScan& placed) {
+  auto reader = io::open_scan(placed.scan);
+  if (!reader) return tl::unexpected(std::move(reader.error()));
+  const ScanHeader& header = (*reader)->header();
+  const Eigen::Vector3d origin = header.local_origin_in_scan;
+  auto begun = writer.begin_scan(
+      {placed.scan.name, {}, placed.file_from_scan, !origin.isZero(0.0), header.has_intensity, header.has_colour});
+  if (!begun) return begun;
+  for (PointChunk chunk;;) {
+    if (auto read = (*reader)->read(chunk, kChunkPoints); !read) return read;
+    if (chunk.points.empty()) return {};
+    if (auto added = writer.add(chunk, origin); !added) return added;
+  }
+}
+
+bool is_e57(const fs::path& path) { return io::lower_case(path.extension().string()) == ".e57"; }
+
+Result<void> copy_e57(const fs::path& from, const fs::path& to, const std::vector<PlacedScan>& scans) {
+  const auto all = io::scans_of_file(from);
+  if (!all) return tl::unexpected(all.error());
+  std::vector<std::optional<Transform>> poses(all->size());
+  for (const PlacedScan& placed : scans) {
+    const auto k = static_cast<std::size_t>(placed.scan.index);
+    if (k < poses.size()) poses[k] = placed.file_from_scan;
+  }
+  return io::copy_e57_with_poses(from, to, poses, io::ScansWithoutPose::left_out);
+}
+
+Result<void> write_one(const fs::path& path, const std::vector<PlacedScan>& scans) {
+  std::error_code ignored;
+  const fs::path& first = scans.front().scan.path;
+  for (const PlacedScan& placed : scans) {
+    if (!fs::equivalent(placed.scan.path, path, ignored)) continue;
+    return fail("this is a scan of the survey, which would be overwritten", path.string(), "name another place");
+  }
+  const bool one_file =
+      std::all_of(scans.begin(), scans.end(), [&](const PlacedScan& placed) { return placed.scan.path == first; });
+  if (one_file && is_e57(first)) return copy_e57(first, path, scans);
+  auto writer = io::E57Writer::create(path);
+  if (!writer) return tl::unexpected(std::move(writer.error()));
+  for (const PlacedScan& placed : scans) {
+    if (auto appended = append_scan(*writer, placed); !appended) return appended;
+  }
+  return writer->publish();
+}
+
+}  // namespace
+
+Result<void> export_e57_file(const fs::path& path, const std::vector<PlacedScan>& scans) {
+  if (scans.empty()) return fail("there is no scan to export", path.string());
+  return write_one(path, scans);
+}
+
+Result<std::vector<fs::path>> export_e57_folder(const fs::path& folder, const fs::path& base,
+                                                const std::vector<PlacedScan>& scans) {
+  std::map<fs::path, std::vector<PlacedScan>> by_file;
+  for (const PlacedScan& placed : scans) by_file[placed.scan.path].push_back(placed);
+  std::vector<fs::path> written;
+  for (const auto& [file, its_scans] : by_file) {
+    const fs::path path = (folder / file.lexically_relative(base)).replace_extension(".e57");
+    if (std::find(written.begin(), written.end(), path) != written.end()) {
+      return fail("two files of scans would get this name", path.string(), "export to a single file: --e57 FILE.e57");
+    }
+    std::error_code error;
+    fs::create_directories(path.parent_path(), error);
+    if (error) return fail("folder cannot be created: " + error.message(), path.parent_path().string());
+    if (auto done = write_one(path, its_scans); !done) return tl::unexpected(std::move(done.error()));
+    written.push_back(path);
+  }
+  return written;
+}
+
+}  // namespace isthmus::pipelines

@@ -21,10 +21,7 @@ class Digest {
   Digest& add_bytes(const void* data, std::size_t size);
   Digest& add(std::string_view text);
   template <class T>
-    requires std::is_arithmetic_v<T>
-  Digest& add(T value) {
-    return add_bytes(&value, sizeof value);
-  }
+  requires std::is_arithmetic_v<T> Digest& add(T value) { return add_bytes(&value, sizeof value); }
   [[nodiscard]] std::uint64_t value64() const;  ///< the low 64 bits
   [[nodiscard]] std::string hex() const;        ///< 32 hexadecimal digits
 

@@ -1,9 +1,9 @@
 // Parallel loops inside a stage. The program owns the one arena; loops write by index, so the thread count cannot show.
 #pragma once
 
-#include <cstddef>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <cstddef>
 
 namespace isthmus {
 

@@ -8,12 +8,12 @@
 namespace isthmus {
 namespace {
 
-constexpr int kDirections = 2500;       // on a half sphere: about 3 degrees apart
-constexpr float kFlatVariation = 0.03f; // rougher surroundings have no normal worth a vote
+constexpr int kDirections = 2500;        // on a half sphere: about 3 degrees apart
+constexpr float kFlatVariation = 0.03f;  // rougher surroundings have no normal worth a vote
 constexpr float kWindowRad = 6.0f * std::numbers::pi_v<float> / 180;
 constexpr double kMinParallelShare = 0.04;
 constexpr double kMinPerpendicularGain = 3;   // times even scatter: trunks and poles over ground too rough for a plane
-constexpr double kMinShareOfFirst = 0.5;     // weaker ones beside a strong axis are chance
+constexpr double kMinShareOfFirst = 0.5;      // weaker ones beside a strong axis are chance
 constexpr double kPerpendicularWeight = 0.5;  // walls of any heading are across: they tell less than a floor
 
 struct Counts {
@@ -91,7 +91,8 @@ DominantAxis described(std::span<const Eigen::Vector3f> normals, Eigen::Vector3f
   axis.sign_agreement = n ? static_cast<float>(std::abs(along) / static_cast<double>(n)) : 0.0f;
   // Two tangent directions share the squared deviation; neighbouring normals are not independent (about 20 to a patch).
   constexpr double kPatch = 20;
-  axis.sigma_rad = n ? static_cast<float>(std::sqrt(sq_sum / 2 / static_cast<double>(n) / std::max(1.0, static_cast<double>(n) / kPatch)))
+  axis.sigma_rad = n ? static_cast<float>(std::sqrt(sq_sum / 2 / static_cast<double>(n) /
+                                                    std::max(1.0, static_cast<double>(n) / kPatch)))
                      : 1.0f;
   return axis;
 }

@@ -18,19 +18,53 @@ const config::OptionTable<FeatureOptions>& feature_options_table() {
       "features",
       "Keypoints and their descriptors.",
       {
-          {"iss_radius_voxels", &FeatureOptions::iss_radius_voxels, "voxels", 2, 50, {},
-           "Radius in which the shape around a point decides whether it is an ISS keypoint.", "Zhong 2009; docs/stages/features.md"},
-          {"iss_gamma", &FeatureOptions::iss_gamma, "", 0.1, 1, {},
-           "Largest ratio of successive eigenvalues of an ISS keypoint: 1 keeps all, smaller keeps only distinct shapes.",
+          {"iss_radius_voxels",
+           &FeatureOptions::iss_radius_voxels,
+           "voxels",
+           2,
+           50,
+           {},
+           "Radius in which the shape around a point decides whether it is an ISS keypoint.",
+           "Zhong 2009; docs/stages/features.md"},
+          {"iss_gamma",
+           &FeatureOptions::iss_gamma,
+           "",
+           0.1,
+           1,
+           {},
+           "Largest ratio of successive eigenvalues of an ISS keypoint: 1 keeps all, smaller keeps only distinct "
+           "shapes.",
            "Zhong 2009; PCL uses 0.975"},
-          {"keypoint_spacing_voxels", &FeatureOptions::keypoint_spacing_voxels, "voxels", 1, 50, {},
+          {"keypoint_spacing_voxels",
+           &FeatureOptions::keypoint_spacing_voxels,
+           "voxels",
+           1,
+           50,
+           {},
            "Spacing of the even keypoints that top up the ISS ones, and the smallest distance of two keypoints.",
            "Flat-walled offices starve on ISS alone; docs/stages/features.md"},
-          {"max_keypoints", &FeatureOptions::max_keypoints, "", 50, 100000, {},
-           "Most keypoints of a scan; above it the spacing grows.", "matching time grows with the square"},
-          {"radius_voxels", &FeatureOptions::radius_voxels, "voxels", 2, 50, {}, "Radius of the small descriptor.",
+          {"max_keypoints",
+           &FeatureOptions::max_keypoints,
+           "",
+           50,
+           100000,
+           {},
+           "Most keypoints of a scan; above it the spacing grows.",
+           "matching time grows with the square"},
+          {"radius_voxels",
+           &FeatureOptions::radius_voxels,
+           "voxels",
+           2,
+           50,
+           {},
+           "Radius of the small descriptor.",
            "Rusu, Blodow, Beetz 2009; docs/stages/features.md"},
-          {"large_radius_voxels", &FeatureOptions::large_radius_voxels, "voxels", 3, 100, {},
+          {"large_radius_voxels",
+           &FeatureOptions::large_radius_voxels,
+           "voxels",
+           3,
+           100,
+           {},
            "Radius of the large descriptor, which tells repeated details apart by what is around them.",
            "docs/stages/features.md"},
       }};
@@ -42,7 +76,9 @@ namespace {
 // The most salient point of each cell, then a greedy pass that keeps points at least `spacing` apart.
 std::vector<std::uint32_t> spread(const SampledScan& scan, std::span<const std::uint32_t> ranked, float spacing_m) {
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> kept;
-  const auto cell = [&](const Eigen::Vector3f& p, int a) { return static_cast<std::int64_t>(std::floor(p[a] / spacing_m)); };
+  const auto cell = [&](const Eigen::Vector3f& p, int a) {
+    return static_cast<std::int64_t>(std::floor(p[a] / spacing_m));
+  };
   const auto key = [](std::int64_t x, std::int64_t y, std::int64_t z) {
     return static_cast<std::uint64_t>(x & 0x1fffff) << 42 | static_cast<std::uint64_t>(y & 0x1fffff) << 21 |
            static_cast<std::uint64_t>(z & 0x1fffff);
@@ -83,7 +119,8 @@ void append_normalised(FeatureCloud& cloud, std::span<const float> small, std::s
     for (std::uint32_t b = 0; b < kFpfhDimension; ++b) {  // square roots: Euclidean distance becomes Hellinger's
       row[b] = std::sqrt(small[k * kFpfhDimension + b]);
       row[kFpfhDimension + b] = std::sqrt(large[k * kFpfhDimension + b]);
-      sq_norm += static_cast<double>(row[b]) * row[b] + static_cast<double>(row[kFpfhDimension + b]) * row[kFpfhDimension + b];
+      sq_norm +=
+          static_cast<double>(row[b]) * row[b] + static_cast<double>(row[kFpfhDimension + b]) * row[kFpfhDimension + b];
     }
     const float scale = sq_norm > 0 ? static_cast<float>(1 / std::sqrt(sq_norm)) : 0.0f;
     for (std::uint32_t b = 0; b < cloud.dimension; ++b) row[b] *= scale;
@@ -103,7 +140,8 @@ void put_upright_first(const SampledScan& scan, std::vector<DominantAxis>& axes)
         offsets.push_back(std::abs((scan.points[i] - scan.station).dot(axis.direction)));
     float median = std::numeric_limits<float>::infinity();
     if (!offsets.empty() && axis.weight >= kComparable * strongest) {
-      std::nth_element(offsets.begin(), offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2), offsets.end());
+      std::nth_element(offsets.begin(), offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2),
+                       offsets.end());
       median = offsets[offsets.size() / 2];
     }
     ranked.emplace_back(median, axis);
@@ -115,8 +153,8 @@ void put_upright_first(const SampledScan& scan, std::vector<DominantAxis>& axes)
 }  // namespace
 
 FeatureCloud describe(const SampledScan& scan, const FeatureOptions& options) {
-  constexpr float kThinningVoxels = 2.0f;     // carriers of the large descriptor
-  constexpr std::size_t kMaxAxes = 3;         // a building has three
+  constexpr float kThinningVoxels = 2.0f;  // carriers of the large descriptor
+  constexpr std::size_t kMaxAxes = 3;      // a building has three
   constexpr float kSpacingGrowth = 1.12f;
   const auto voxel = static_cast<float>(scan.voxel_m);
   FeatureCloud cloud;
@@ -142,7 +180,8 @@ FeatureCloud describe(const SampledScan& scan, const FeatureOptions& options) {
 
   std::vector<std::uint32_t> all(scan.points.size());
   std::iota(all.begin(), all.end(), 0u);
-  const auto small = fpfh(scan.points, scan.normals, all, cloud.keypoints, static_cast<float>(options.radius_voxels) * voxel);
+  const auto small =
+      fpfh(scan.points, scan.normals, all, cloud.keypoints, static_cast<float>(options.radius_voxels) * voxel);
   const auto large = fpfh(scan.points, scan.normals, thinned(scan, kThinningVoxels * voxel), cloud.keypoints,
                           static_cast<float>(options.large_radius_voxels) * voxel);
   append_normalised(cloud, small, large);

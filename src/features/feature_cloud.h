@@ -10,11 +10,14 @@ namespace isthmus {
 /// A direction along which a scan is organised: the vertical of a levelled scan, the axes of a building.
 struct DominantAxis {
   Eigen::Vector3f direction = Eigen::Vector3f::Zero();  ///< unit; sign: most points' normals along it agree
-  float weight = 0;      ///< share of points whose normals are parallel or perpendicular to it
-  float sigma_rad = 0;   ///< uncertainty of the direction
-  float sign_agreement = 0;  ///< 1: all normals along it point the same way (open ground), 0: as many each way (floor and ceiling)
+  float weight = 0;     ///< share of points whose normals are parallel or perpendicular to it
+  float sigma_rad = 0;  ///< uncertainty of the direction
+  float sign_agreement =
+      0;  ///< 1: all normals along it point the same way (open ground), 0: as many each way (floor and ceiling)
   template <class F>
-  void fields(F&& f) { f(direction), f(weight), f(sigma_rad), f(sign_agreement); }
+  void fields(F&& f) {
+    f(direction), f(weight), f(sigma_rad), f(sign_agreement);
+  }
 };
 
 struct FeatureCloud {
@@ -24,7 +27,9 @@ struct FeatureCloud {
   std::vector<float> descriptors;        ///< keypoints.size() x dimension, a row per keypoint, each row of unit length
   std::vector<DominantAxis> axes;        ///< most likely vertical first; empty when the scan shows none
   template <class F>
-  void fields(F&& f) { f(keypoints), f(saliency), f(dimension), f(descriptors), f(axes); }
+  void fields(F&& f) {
+    f(keypoints), f(saliency), f(dimension), f(descriptors), f(axes);
+  }
 };
 
 }  // namespace isthmus

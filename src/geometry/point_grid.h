@@ -10,13 +10,14 @@
 
 namespace isthmus {
 
-/// Keeps a reference to `points`; they must outlive the grid. Queries visit cells in a fixed order and indices of a cell in
-/// ascending order, so sums over neighbours are the same on every run. Points must be finite.
+/// Keeps a reference to `points`; they must outlive the grid. Queries visit cells in a fixed order and indices of a
+/// cell in ascending order, so sums over neighbours are the same on every run. Points must be finite.
 class PointGrid {
  public:
   PointGrid(std::span<const Eigen::Vector3f> points, float cell_m);
 
-  /// visit(index, squared distance in m2) for every point within radius_m of `query` (the query itself included if indexed).
+  /// visit(index, squared distance in m2) for every point within radius_m of `query` (the query itself included if
+  /// indexed).
   template <class Visit>
   void for_each_within(const Eigen::Vector3f& query, float radius_m, Visit&& visit) const {
     const float sq_radius = radius_m * radius_m;
@@ -51,8 +52,8 @@ class PointGrid {
 
   std::span<const Eigen::Vector3f> points_;
   float inverse_cell_;
-  std::vector<std::uint32_t> order_;   // point indices grouped by cell
-  std::vector<std::uint64_t> slots_;   // open addressing: key + 1, 0 = empty
+  std::vector<std::uint32_t> order_;  // point indices grouped by cell
+  std::vector<std::uint64_t> slots_;  // open addressing: key + 1, 0 = empty
   std::vector<std::pair<std::uint32_t, std::uint32_t>> runs_;
   std::uint64_t mask_ = 0;
 };

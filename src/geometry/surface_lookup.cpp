@@ -44,11 +44,11 @@ SurfaceLookup::SurfaceLookup(std::span<const Eigen::Vector3f> points, float cell
     box.low = middle - half, box.high = middle + half;
   }
   low_ = box.low;
-  for (int a = 0; a < 3; ++a)
-    size_[a] = static_cast<std::uint32_t>((box.high[a] - box.low[a]) * inverse_cell_ / 8) + 1;
+  for (int a = 0; a < 3; ++a) size_[a] = static_cast<std::uint32_t>((box.high[a] - box.low[a]) * inverse_cell_ / 8) + 1;
   blocks_.assign(static_cast<std::size_t>(size_[0]) * size_[1] * size_[2], -1);
   std::vector<float> sq_distance;
-  const Eigen::Array3i limit(static_cast<int>(size_[0]) * 8, static_cast<int>(size_[1]) * 8, static_cast<int>(size_[2]) * 8);
+  const Eigen::Array3i limit(static_cast<int>(size_[0]) * 8, static_cast<int>(size_[1]) * 8,
+                             static_cast<int>(size_[2]) * 8);
   const float reach_m = cell_m * (static_cast<float>(reach_cells) + 0.5f);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3f g = (points[i] - low_) * inverse_cell_;

@@ -9,10 +9,10 @@
 
 namespace isthmus {
 
-/// Cells of edge `cell_m` in blocks of 8 x 8 x 8, allocated only near points. A cell knows the indexed point nearest to its
-/// centre among those within reach_cells + 0.5 cells of it, so a lookup costs two memory reads. The query lies within half a
-/// cell diagonal of that centre: the answer is at most a whole diagonal farther than the nearest point. Deterministic; ties
-/// go to the smaller index.
+/// Cells of edge `cell_m` in blocks of 8 x 8 x 8, allocated only near points. A cell knows the indexed point nearest to
+/// its centre among those within reach_cells + 0.5 cells of it, so a lookup costs two memory reads. The query lies
+/// within half a cell diagonal of that centre: the answer is at most a whole diagonal farther than the nearest point.
+/// Deterministic; ties go to the smaller index.
 class SurfaceLookup {
  public:
   SurfaceLookup() = default;

@@ -50,7 +50,9 @@ std::vector<Seed> column_votes(const GeneratorContext& c) {
   return seeds;
 }
 
-std::vector<Seed> pair_votes(const GeneratorContext& c) { return vote_seeds_by_pairs(c.source, c.target, c.matches, {}); }
+std::vector<Seed> pair_votes(const GeneratorContext& c) {
+  return vote_seeds_by_pairs(c.source, c.target, c.matches, {});
+}
 
 }  // namespace
 

@@ -21,8 +21,8 @@ struct Profile {
   double contradiction = 0, against = 0;
 };
 
-// Tolerance along the normal in coarse voxels, the same in metres at both levels: flat surfaces meet within a fifth of a voxel
-// (a curved wall sags that much between two points of it), rough ones within their roughness.
+// Tolerance along the normal in coarse voxels, the same in metres at both levels: flat surfaces meet within a fifth of
+// a voxel (a curved wall sags that much between two points of it), rough ones within their roughness.
 float tolerance_m(const ScanModel& model, std::int32_t point) {
   const float at_level = 1.2f * std::sqrt(model.variation[point]) * model.voxel_m;
   return 0.22f * static_cast<float>(model.scan.voxel_m) + at_level;
@@ -93,7 +93,9 @@ double combined_support(const Hypothesis& h) {
 // Of what lies in sight of the other station, how much contradicts it: at true poses 0.1-5 %, more in thinned scans.
 double free_space_factor(const Hypothesis& h) {
   constexpr double kDecay = 0.05;
-  const auto share = [](const DirectedEvidence& e) { return e.contradiction / std::max(e.contradiction + e.support, 1e-9); };
+  const auto share = [](const DirectedEvidence& e) {
+    return e.contradiction / std::max(e.contradiction + e.support, 1e-9);
+  };
   return std::exp(-0.5 * (share(h.source) + share(h.target)) / kDecay);
 }
 
@@ -101,7 +103,8 @@ double free_space_factor(const Hypothesis& h) {
 double score_alone(const ScanModel& source, const ScanModel& target, std::span<const std::uint32_t> from,
                    std::span<const std::uint32_t> to, const Transform& target_from_source, float widened_m = 0) {
   Hypothesis h;
-  h.source = summary(profile(source, target, target_from_source, from, widened_m), std::vector<float>(from.size(), 1.0f));
+  h.source =
+      summary(profile(source, target, target_from_source, from, widened_m), std::vector<float>(from.size(), 1.0f));
   h.target = summary(profile(target, source, target_from_source.inverse(), to, widened_m),
                      std::vector<float>(to.size(), 1.0f));
   return combined_support(h) * free_space_factor(h);
@@ -114,7 +117,8 @@ std::pair<Eigen::Vector3d, double> middle_of_overlap(const ScanModel& source, co
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double weight = 0, sq = 0;
   for (std::size_t k = 0; k < from.size(); ++k)
-    sum += static_cast<double>(p.support[k]) * source.points[from[k]].cast<double>(), weight += static_cast<double>(p.support[k]);
+    sum += static_cast<double>(p.support[k]) * source.points[from[k]].cast<double>(),
+        weight += static_cast<double>(p.support[k]);
   if (!(weight > 0)) return {source.centroid.cast<double>(), static_cast<double>(source.extent_m)};
   const Eigen::Vector3d middle = sum / weight;
   for (std::size_t k = 0; k < from.size(); ++k)
@@ -130,44 +134,57 @@ void climb(const ScanModel& source, const ScanModel& target, std::size_t max_poi
   constexpr int kMaxRounds = 12;
   const auto from = even_sample(source, max_points), to = even_sample(target, max_points);
   const auto [middle, reach] = middle_of_overlap(source, target, from, hypothesis.target_from_source);
-  const Transform start = hypothesis.target_from_source;
-  Transform best_pose = start;
-  double step = first_step_voxels;
-  double best = 0;
-  bool known = false;  // best, at the tolerance of this step
-  for (int round = 0; round < kMaxRounds && step >= kLastStepVoxels; ++round) {
-    const double step_m = step * static_cast<double>(source.voxel_m);
-    const auto widened_m = static_cast<float>(step_m / 2);  // a step must be able to reach what it is meant for
-    if (!known) best = score_alone(source, target, from, to, best_pose, widened_m), known = true;
-    bool moved = false;
-    for (int axis = 0; axis < 6; ++axis)
-      for (const double sign : {1.0, -1.0}) {
-        Transform d = Transform::Identity();  // in the source's frame, about the middle
-        if (axis < 3) {
-          d.translation()[axis] = sign * step_m;
-        } else {
-          const Eigen::Matrix3d turn = rotation_from_vector(Eigen::Vector3d::Unit(axis - 3) * (sign * step_m / reach));
-          d.linear() = turn;
-          d.translation() = middle - turn * middle;
+  // A step in the source's frame about the middle of the overlap.
+  const auto step_of = [&middle = middle, &reach = reach](int axis, double step_m) {
+    Transform d = Transform::Identity();
+    if (axis < 3) {
+      d.translation()[axis] = step_m;
+      return d;
+    }
+    const Eigen::Matrix3d turn = rotation_from_vector(Eigen::Vector3d::Unit(axis - 3) * (step_m / reach));
+    d.linear() = turn;
+    d.translation() = middle - turn * middle;
+    return d;
+  };
+  // widening: of the tolerance, in steps; a step must be able to reach what it is meant for.
+  const auto climbed = [&](Transform pose, double widening) {
+    double step = first_step_voxels, best = 0;
+    bool known = false;  // best, at the tolerance of this step
+    for (int round = 0; round < kMaxRounds && step >= kLastStepVoxels; ++round) {
+      const double step_m = step * static_cast<double>(source.voxel_m);
+      const auto widened_m = static_cast<float>(widening * step_m);
+      if (!known) best = score_alone(source, target, from, to, pose, widened_m), known = true;
+      bool moved = false;
+      for (int axis = 0; axis < 6; ++axis)
+        for (const double sign : {1.0, -1.0}) {
+          const Transform tried = pose * step_of(axis, sign * step_m);
+          const double score = score_alone(source, target, from, to, tried, widened_m);
+          if (score <= best) continue;
+          best = score, pose = tried, moved = true;
+          break;  // the other way only if this one fails
         }
-        const Transform tried = best_pose * d;
-        const double score = score_alone(source, target, from, to, tried, widened_m);
-        if (score <= best) continue;
-        best = score, best_pose = tried, moved = true;
-        break;  // the other way only if this one fails
-      }
-    if (!moved) step /= 2, known = false;
+      if (!moved) step /= 2, known = false;
+    }
+    return pose;
+  };
+  constexpr double kWidening = 0.5;
+  const Transform start = hypothesis.target_from_source;
+  const double before = score_alone(source, target, from, to, start);
+  for (const double widening : {kWidening, 0.0}) {  // along a flat ridge the wide tolerance may wander off
+    const Transform end = climbed(start, widening);
+    if (score_alone(source, target, from, to, end) <= before) continue;
+    hypothesis.target_from_source = end;
+    break;
   }
-  if (score_alone(source, target, from, to, best_pose) >= score_alone(source, target, from, to, start))
-    hypothesis.target_from_source = best_pose;
   hypothesis.target_from_source = orthonormalised(hypothesis.target_from_source);
 }
 
-void polish(const ScanModel& source, const ScanModel& target, std::size_t max_points, int steps, Hypothesis& hypothesis) {
+void polish(const ScanModel& source, const ScanModel& target, std::size_t max_points, int steps,
+            Hypothesis& hypothesis) {
   const auto from = even_sample(source, max_points), to = even_sample(target, max_points);
   constexpr std::size_t kMinMatches = 12;
-  // A few matches on a line could throw a hypothesis anywhere: no step moves the scan by more than a few voxels, and a step
-  // that loses the surface is taken back.
+  // A few matches on a line could throw a hypothesis anywhere: no step moves the scan by more than a few voxels, and a
+  // step that loses the surface is taken back.
   constexpr double kMaxMoveVoxels = 2, kMaxTurnVoxels = 4;
   constexpr double kMinKept = 0.6;
   Transform t = hypothesis.target_from_source, before = t;
@@ -215,14 +232,16 @@ void polish_unless_worse(const ScanModel& source, const ScanModel& target, std::
 }
 
 bool same_basin(const ScanModel& source, const Transform& a, const Transform& b) {
-  constexpr double kBasinVoxels = 6, kBasinRad = 0.09;  // what polishing the same answer leaves in rough or sparse scans
+  constexpr double kBasinVoxels = 6,
+                   kBasinRad = 0.09;  // what polishing the same answer leaves in rough or sparse scans
   const Eigen::Vector3d middle = source.centroid.cast<double>();
   if ((a * middle - b * middle).norm() > kBasinVoxels * source.scan.voxel_m) return false;
   return rotation_angle_rad(a.linear().transpose() * b.linear()) < kBasinRad;
 }
 
 void keep_distinct(const ScanModel& source, double position_m, std::vector<Hypothesis>& hypotheses) {
-  std::stable_sort(hypotheses.begin(), hypotheses.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
+  std::stable_sort(hypotheses.begin(), hypotheses.end(),
+                   [](const auto& a, const auto& b) { return a.score > b.score; });
   const Eigen::Vector3d middle = source.centroid.cast<double>();
   const double reach = static_cast<double>(source.extent_m);
   std::vector<Hypothesis> kept;
@@ -261,10 +280,10 @@ void weigh(const ScanModel& source, const ScanModel& target, const Weighing& wei
     Hypothesis& h = hypotheses[k];
     h.source = summary(forward[k], from_weight);
     h.target = summary(backward[k], to_weight);
-    h.score = combined_support(h) *
-              (weighing.free_space ? free_space_factor(h) : 1.0);
+    h.score = combined_support(h) * (weighing.free_space ? free_space_factor(h) : 1.0);
   }
-  std::stable_sort(hypotheses.begin(), hypotheses.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
+  std::stable_sort(hypotheses.begin(), hypotheses.end(),
+                   [](const auto& a, const auto& b) { return a.score > b.score; });
 }
 
 }  // namespace isthmus

@@ -21,26 +21,27 @@ struct Hypothesis {
   Transform target_from_source = Transform::Identity();
   const char* generator = "";
   DirectedEvidence source, target;
-  double rms_m = 0;    ///< of the polish, point-to-plane
-  double score = 0;    ///< ranking: the larger the better
+  double rms_m = 0;  ///< of the polish, point-to-plane
+  double score = 0;  ///< ranking: the larger the better
 };
 
 /// A few point-to-plane steps in both directions with a shrinking gate, on up to `max_points` points a direction.
-void polish(const ScanModel& source, const ScanModel& target, std::size_t max_points, int steps, Hypothesis& hypothesis);
+void polish(const ScanModel& source, const ScanModel& target, std::size_t max_points, int steps,
+            Hypothesis& hypothesis);
 
 /// The same, taken back where it loses support: rough normals can lead a good pose astray.
 void polish_unless_worse(const ScanModel& source, const ScanModel& target, std::size_t max_points, int steps,
                          Hypothesis& hypothesis);
 
-/// Pattern search (Hooke, Jeeves 1961) over the six degrees of freedom about the middle of the overlap, uphill in support
-/// and free space themselves: where normals are rough, as in foliage, point-to-plane steps do not find the way. Steps of
-/// `first_step_voxels` are halved until an eighth of a voxel, and the tolerance narrows with them. Never ends below its
-/// start.
+/// Pattern search (Hooke, Jeeves 1961) over the six degrees of freedom about the middle of the overlap, uphill in
+/// support and free space themselves: where normals are rough, as in foliage, point-to-plane steps do not find the way.
+/// Steps of `first_step_voxels` are halved until an eighth of a voxel, and the tolerance narrows with them. Never ends
+/// below its start.
 void climb(const ScanModel& source, const ScanModel& target, std::size_t max_points, double first_step_voxels,
            Hypothesis& hypothesis);
 
-/// Of hypotheses that put the source's points within `position_m` (95 % of its extent considered) of each other, the best
-/// scored stays.
+/// Of hypotheses that put the source's points within `position_m` (95 % of its extent considered) of each other, the
+/// best scored stays.
 void keep_distinct(const ScanModel& source, double position_m, std::vector<Hypothesis>& hypotheses);
 
 /// Whether two poses are the same answer, found with a different error: a rival is one that is not.
@@ -52,10 +53,10 @@ struct Weighing {
   bool free_space = true;         ///< false: contradictions do not lower the score
 };
 
-/// Fills the evidence and score of all and sorts them best first. What every hypothesis explains (floors, long walls) weighs
-/// little: a point's weight is the logarithm of the inverse share of hypotheses that support it, as in document retrieval
-/// (Sparck Jones 1972), so there is no prior notion of what is common in a scene. Poses of one basin count as one hypothesis: many errors of the
-/// truth do not make it common.
+/// Fills the evidence and score of all and sorts them best first. What every hypothesis explains (floors, long walls)
+/// weighs little: a point's weight is the logarithm of the inverse share of hypotheses that support it, as in document
+/// retrieval (Sparck Jones 1972), so there is no prior notion of what is common in a scene. Poses of one basin count as
+/// one hypothesis: many errors of the truth do not make it common.
 void weigh(const ScanModel& source, const ScanModel& target, const Weighing& weighing,
            std::vector<Hypothesis>& hypotheses);
 

@@ -1,8 +1,8 @@
 #include "pairwise/judge.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 namespace isthmus {
 
@@ -13,8 +13,8 @@ double contradicting_share(const PairEvidence& e) {
   return e.contradiction / std::max(e.contradiction + e.support, 1e-9);
 }
 
-// Where so much of a scan stands in space that the other station saw through, no support is enough: repeated halls and rooms
-// of the same size reach 4-9 % at 60 % support, true poses of whole scans stay below 3 %.
+// Where so much of a scan stands in space that the other station saw through, no support is enough: repeated halls and
+// rooms of the same size reach 4-9 % at 60 % support, true poses of whole scans stay below 3 %.
 bool vetoed(const PairEvidence& e) {
   constexpr double kMaxContradiction = 0.03, kMaxShare = 0.05;
   return e.contradiction > kMaxContradiction && contradicting_share(e) > kMaxShare;
@@ -23,14 +23,15 @@ bool vetoed(const PairEvidence& e) {
 }  // namespace
 
 double probability_of(const PairEvidence& e) {
-  // Logistic regression over 759 pairs; the table of sets and the check with each set left out in turn are in
+  // Logistic regression over 544 pairs; the table of sets and the check with each set left out in turn are in
   // docs/stages/verdict.md. The floors keep tiny scores from looking like clear margins.
-  constexpr double kIntercept = -2.35, kLogScore = 1.07, kLogMargin = 5.39, kContradiction = -4.07;
+  constexpr double kIntercept = -1.99, kLogScore = 1.42, kLogMargin = 4.31, kContradiction = -1.40, kNear = -1.07;
   constexpr double kLeastScore = 1e-3, kLeastRival = 0.02, kVetoedProbability = 0.5;
   const double score = std::max(e.score, kLeastScore);
   const double logit = kIntercept + kLogScore * (std::log(score) + 3) +
                        kLogMargin * std::log(score / std::max(e.rival_score, kLeastRival)) +
-                       kContradiction * std::min(contradicting_share(e), 0.3);
+                       kContradiction * std::min(contradicting_share(e), 0.3) +
+                       kNear * std::min(e.near_score / score, 1.0);
   const double p = 1 / (1 + std::exp(-logit));
   return vetoed(e) ? std::min(p, kVetoedProbability) : p;
 }
@@ -58,9 +59,11 @@ void judge(const PairEvidence& e, const PairOptions& options, PairResult& result
   result.verdict = result.probability >= options.ambiguous_probability ? Verdict::ambiguous : Verdict::rejected;
   constexpr double kClearMargin = 1.5;
   if (vetoed(e))
-    result.reason = fmt::format("{:.1f} % of the points stand where the other station saw through", 100 * e.contradiction);
+    result.reason =
+        fmt::format("{:.1f} % of the points stand where the other station saw through", 100 * e.contradiction);
   else if (e.score < kClearMargin * e.rival_score)
-    result.reason = fmt::format("a rival pose explains the scans {:.0f} % as well", 100 * std::min(1.0, e.rival_score / std::max(e.score, 1e-9)));
+    result.reason = fmt::format("a rival pose explains the scans {:.0f} % as well",
+                                100 * std::min(1.0, e.rival_score / std::max(e.score, 1e-9)));
   else
     result.reason = fmt::format("only {:.1f} % of the smaller scan is explained", 100 * e.support);
 }

@@ -9,23 +9,23 @@ namespace isthmus {
 
 /// The terms the verdict is made of, in a fixed order.
 struct PairEvidence {
-  double score = 0;            ///< of the best hypothesis, see weigh()
-  double near_score = 0;       ///< of the next best pose in the same basin: how well the place is fixed
-  double rival_score = 0;      ///< of the best pose elsewhere, at least 0
-  double rival_voxels = 0;     ///< how far apart the two put the source's middle; 0 without a rival
-  double rival_deg = 0;        ///< and how differently they turn it
-  double support = 0;          ///< the smaller direction
-  double rare_support = 0;     ///< the smaller direction
-  double contradiction = 0;    ///< the larger direction
-  double against = 0;          ///< the larger direction
+  double score = 0;          ///< of the best hypothesis, see weigh()
+  double near_score = 0;     ///< of the next best pose in the same basin: how well the place is fixed
+  double rival_score = 0;    ///< of the best pose elsewhere, at least 0
+  double rival_voxels = 0;   ///< how far apart the two put the source's middle; 0 without a rival
+  double rival_deg = 0;      ///< and how differently they turn it
+  double support = 0;        ///< the smaller direction
+  double rare_support = 0;   ///< the smaller direction
+  double contradiction = 0;  ///< the larger direction
+  double against = 0;        ///< the larger direction
   double rms_voxels = 0;
-  double observability = 0;    ///< smallest over largest stiffness against translation, 0 = slides freely
-  double num_supported = 0;    ///< voxel points on the other scan's surface, the smaller direction
-  bool free_space = false;     ///< at least one scan has a known station
+  double observability = 0;  ///< smallest over largest stiffness against translation, 0 = slides freely
+  double num_supported = 0;  ///< voxel points on the other scan's surface, the smaller direction
+  bool free_space = false;   ///< at least one scan has a known station
 };
 
-/// Probability that the best hypothesis is right: logistic regression over the evidence, see docs/stages/verdict.md for the
-/// sets it was fitted on and the sets it was checked on.
+/// Probability that the best hypothesis is right: logistic regression over the evidence, see docs/stages/verdict.md for
+/// the sets it was fitted on and the sets it was checked on.
 double probability_of(const PairEvidence& evidence);
 
 /// Verdict, probability and reason of `result`, from its evidence.

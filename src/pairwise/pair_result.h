@@ -22,15 +22,15 @@ const char* to_string(Verdict verdict);
 struct PairResult {
   Verdict verdict = Verdict::failed;
   std::string reason = "not computed";
-  double probability = 0;                        ///< that target_from_source is right (calibrated, see docs)
-  std::optional<Transform> target_from_source;   ///< best hypothesis between the *local* frames, whatever the verdict
-  /// Inverse covariance of target_from_source under a right perturbation, T * exp(d): d = (translation in metres, rotation
-  /// vector in radians), both in the source frame, translation first.
+  double probability = 0;                       ///< that target_from_source is right (calibrated, see docs)
+  std::optional<Transform> target_from_source;  ///< best hypothesis between the *local* frames, whatever the verdict
+  /// Inverse covariance of target_from_source under a right perturbation, T * exp(d): d = (translation in metres,
+  /// rotation vector in radians), both in the source frame, translation first.
   Matrix6d information = Matrix6d::Zero();
-  double overlap_of_source = 0;                  ///< share of source points with a facing target point
+  double overlap_of_source = 0;  ///< share of source points with a facing target point
   double overlap_of_target = 0;
-  double overlap = 0;                            ///< the smaller of the two
-  double rms_m = 0;                              ///< point-to-plane over the overlap
+  double overlap = 0;                                            ///< the smaller of the two
+  double rms_m = 0;                                              ///< point-to-plane over the overlap
   std::vector<std::pair<std::string, double>> evidence;          ///< named terms, in a fixed order
   std::vector<std::pair<std::string, double>> seconds_by_stage;  ///< timings: never in deterministic outputs
   std::vector<std::pair<std::string, double>> counts;            ///< work counts: hypotheses, trials, ...

@@ -21,7 +21,9 @@ struct ScanProduct {
   FeatureCloud features;
   RegionMap regions;
   template <class F>
-  void fields(F&& f) { f(sampled), f(features), f(regions); }
+  void fields(F&& f) {
+    f(sampled), f(features), f(regions);
+  }
 };
 
 struct PairOptions {
@@ -52,8 +54,8 @@ struct PairTrace {
 };
 
 /// Registers source to target. `priors` are extra hypotheses (target_from_source between local frames) judged like the
-/// others. Deterministic for any thread count; uses TBB loops inside. Never throws for data reasons: a useless input gives
-/// Verdict::failed or rejected with a reason. Both scans must have the same voxel_m.
+/// others. Deterministic for any thread count; uses TBB loops inside. Never throws for data reasons: a useless input
+/// gives Verdict::failed or rejected with a reason. Both scans must have the same voxel_m.
 PairResult register_pair(const ScanProduct& source, const ScanProduct& target, const PairOptions& options,
                          std::span<const Transform> priors = {}, PairTrace* trace = nullptr);
 

@@ -112,7 +112,8 @@ std::vector<float> likely_turns(const Plan& source, const Plan& target, float st
   const auto histogram = [n](const Plan& plan) {
     std::vector<float> bins(n, 0.0f);
     for (const Column& c : plan.columns)
-      if (c.faces) bins[static_cast<std::size_t>((c.heading + kPi) / (2 * kPi) * static_cast<float>(n)) % n] += c.weight;
+      if (c.faces)
+        bins[static_cast<std::size_t>((c.heading + kPi) / (2 * kPi) * static_cast<float>(n)) % n] += c.weight;
     return bins;
   };
   const std::vector<float> from = histogram(source), to = histogram(target);
@@ -125,7 +126,8 @@ std::vector<float> likely_turns(const Plan& source, const Plan& target, float st
   const float best = *std::max_element(agreement.begin(), agreement.end());
   std::vector<float> turns;
   for (std::size_t k = 0; k < n; ++k)
-    if (agreement[k] >= kLeastShare * best) turns.push_back(wrapped(static_cast<float>(k) * 2 * kPi / static_cast<float>(n)));
+    if (agreement[k] >= kLeastShare * best)
+      turns.push_back(wrapped(static_cast<float>(k) * 2 * kPi / static_cast<float>(n)));
   return turns;
 }
 
@@ -169,7 +171,8 @@ class ShiftVotes {
         continue;
       }
       const int middle = static_cast<int>(bin_of(wrapped(c.heading + yaw)));
-      for (int d = -kReachBins; d <= kReachBins; ++d) vote(bins_[static_cast<std::size_t>((middle + d + kBins) % kBins)]);
+      for (int d = -kReachBins; d <= kReachBins; ++d)
+        vote(bins_[static_cast<std::size_t>((middle + d + kBins) % kBins)]);
     }
     return heaviest(votes, yaw, count);
   }
@@ -208,8 +211,9 @@ class ShiftVotes {
         best.emplace_back(s, static_cast<std::uint32_t>(k));
         std::push_heap(best.begin(), best.end(), std::greater<>());
       }
-    std::sort(best.begin(), best.end(),
-              [](const auto& a, const auto& b) { return a.first != b.first ? a.first > b.first : a.second < b.second; });
+    std::sort(best.begin(), best.end(), [](const auto& a, const auto& b) {
+      return a.first != b.first ? a.first > b.first : a.second < b.second;
+    });
     std::vector<Peak> out;
     for (const auto& [s, k] : best) {
       Eigen::Vector2f mean = Eigen::Vector2f::Zero();
@@ -262,7 +266,8 @@ class Heights {
     std::vector<std::pair<float, std::int64_t>> sums;
     for (const auto& [bin, weight] : votes) {
       const auto next = votes.find(bin + 1), before = votes.find(bin - 1);
-      sums.emplace_back(weight + (next != votes.end() ? next->second : 0) + (before != votes.end() ? before->second : 0), bin);
+      sums.emplace_back(
+          weight + (next != votes.end() ? next->second : 0) + (before != votes.end() ? before->second : 0), bin);
     }
     std::stable_sort(sums.begin(), sums.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     std::vector<float> out;
@@ -315,7 +320,8 @@ std::vector<Seed> vote_seeds_by_columns(const ScanModel& source, const ScanModel
   if (peaks.size() > options.max_checked) peaks.resize(options.max_checked);
 
   const Heights heights(to, cell);
-  const Eigen::Vector3f source_middle = z_from_source * source.centroid, target_middle = z_from_target * target.centroid;
+  const Eigen::Vector3f source_middle = z_from_source * source.centroid,
+                        target_middle = z_from_target * target.centroid;
   std::vector<Pose3f> poses;
   std::vector<float> votes_of_pose;
   for (const Peak& peak : peaks)
@@ -352,7 +358,9 @@ std::vector<Seed> vote_seeds_by_columns(const ScanModel& source, const ScanModel
     const Pose3f& pose = poses[order[s]];
     // Growth begins in the region with the most support around it.
     std::vector<std::uint32_t> sample;
-    for (std::uint32_t i = 0; i < source.points.size(); i += static_cast<std::uint32_t>(stride_for(source, kLookPoints))) sample.push_back(i);
+    for (std::uint32_t i = 0; i < source.points.size();
+         i += static_cast<std::uint32_t>(stride_for(source, kLookPoints)))
+      sample.push_back(i);
     const PointVerdicts verdicts = judge_points(source, target, pose, sample, true);
     const auto& regions = source.regions.regions;
     constexpr float kReachVoxels = 30;

@@ -49,7 +49,8 @@ GrownOverlap grow(const ScanModel& source, const ScanModel& target, const Seed& 
   for (int step = 0; finals > 0; ++step, radius *= options.growth) {
     const bool covers_all = radius >= whole;
     if (covers_all) --finals;
-    const auto n = static_cast<std::size_t>(std::upper_bound(distance.begin(), distance.end(), radius) - distance.begin());
+    const auto n =
+        static_cast<std::size_t>(std::upper_bound(distance.begin(), distance.end(), radius) - distance.begin());
     std::vector<std::uint32_t> part;
     const std::size_t stride = std::max<std::size_t>(1, n / options.max_points);
     for (std::size_t k = 0; k < n; k += stride) part.push_back(sample[k]);

@@ -8,8 +8,8 @@ namespace isthmus {
 
 struct GrowOptions {
   float start_radius_voxels = 18;
-  float growth = 1.6f;              ///< of the radius, each step
-  std::size_t max_points = 700;     ///< of the source, in each step
+  float growth = 1.6f;           ///< of the radius, each step
+  std::size_t max_points = 700;  ///< of the source, in each step
   int final_steps = 3;
 };
 
@@ -21,11 +21,12 @@ struct GrownOverlap {
   double rms_m = 0;
 };
 
-/// Aligns the neighbourhood of the seed's region, then ever wider ones, each step point-to-plane on what faces the target's
-/// surface, until the whole scan is covered: the rotation error shrinks before far points may have a say.
+/// Aligns the neighbourhood of the seed's region, then ever wider ones, each step point-to-plane on what faces the
+/// target's surface, until the whole scan is covered: the rotation error shrinks before far points may have a say.
 GrownOverlap grow(const ScanModel& source, const ScanModel& target, const Seed& seed, const GrowOptions& options);
 
-/// Support of both directions less contradiction, the one number hypotheses are ranked by before the evidence is complete.
+/// Support of both directions less contradiction, the one number hypotheses are ranked by before the evidence is
+/// complete.
 float ranking_score(const DirectedScore& source_in_target, const DirectedScore& target_in_source);
 
 }  // namespace isthmus

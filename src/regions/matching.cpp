@@ -21,7 +21,8 @@ MatchTable match_descriptors(const FeatureCloud& source, const FeatureCloud& tar
   const Eigen::Map<const Rows> b(target.descriptors.data(), static_cast<Eigen::Index>(m), target.dimension);
   parallel_for_index((n + kBlock - 1) / kBlock, 1, [&](std::size_t block) {
     const std::size_t first = block * kBlock, rows = std::min(kBlock, n - first);
-    const Rows similarity = a.middleRows(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(rows)) * b.transpose();
+    const Rows similarity =
+        a.middleRows(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(rows)) * b.transpose();
     std::vector<std::uint32_t> order(m);
     for (std::size_t r = 0; r < rows; ++r) {
       const float* s = similarity.data() + r * m;

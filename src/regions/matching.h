@@ -15,8 +15,8 @@ struct MatchTable {
   std::vector<float> similarity;      ///< the same shape: scalar product of the descriptors
 };
 
-/// Exhaustive search by matrix products; deterministic, ties go to the smaller index. `count` is lowered to the number of
-/// target keypoints. Both clouds must have the same descriptor dimension.
+/// Exhaustive search by matrix products; deterministic, ties go to the smaller index. `count` is lowered to the number
+/// of target keypoints. Both clouds must have the same descriptor dimension.
 MatchTable match_descriptors(const FeatureCloud& source, const FeatureCloud& target, std::uint32_t count);
 
 }  // namespace isthmus

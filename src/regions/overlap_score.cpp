@@ -17,7 +17,9 @@ PointVerdict judge(const ScanModel& from, const ScanModel& to, const Pose3f& to_
 }
 
 const SurfaceLookup& lookup_of(const ScanModel& to, bool coarse) { return coarse ? to.coarse : to.fine; }
-float tolerance_of(const ScanModel& to, bool coarse) { return kFreeToleranceVoxels * to.voxel_m * (coarse ? 2.0f : 1.0f); }
+float tolerance_of(const ScanModel& to, bool coarse) {
+  return kFreeToleranceVoxels * to.voxel_m * (coarse ? 2.0f : 1.0f);
+}
 
 }  // namespace
 

@@ -28,8 +28,8 @@ struct DirectedScore {
 enum class PointVerdict : std::uint8_t { neutral, supported, contradicted, against };
 using PointVerdicts = std::vector<PointVerdict>;
 
-/// The verdict on each point of `sample` (indices into from's points) under `to_from`. coarse: within about 3 voxels instead
-/// of 1.5, and twice the free-space tolerance.
+/// The verdict on each point of `sample` (indices into from's points) under `to_from`. coarse: within about 3 voxels
+/// instead of 1.5, and twice the free-space tolerance.
 PointVerdicts judge_points(const ScanModel& from, const ScanModel& to, const Pose3f& to_from,
                            std::span<const std::uint32_t> sample, bool coarse);
 

@@ -49,7 +49,9 @@ bool agrees(const WindowMatch& a, const WindowMatch& b, float voxel, const PairV
 }
 
 std::uint64_t cell_key(const PoseVote& v, float position_cell, float rotation_cell) {
-  const auto cell = [](float value, float size) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value / size))); };
+  const auto cell = [](float value, float size) {
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value / size)));
+  };
   std::uint64_t key = 0;
   for (int a = 0; a < 3; ++a) key = key << 13 | (cell(v.centre[a], position_cell) & 0x1fff);
   for (int a = 0; a < 3; ++a) key = key << 6 | (cell(v.rotation.vec()[a] + 1.01f, rotation_cell) & 0x3f);
@@ -153,18 +155,21 @@ std::vector<Seed> vote_seeds_by_pairs(const ScanModel& source, const ScanModel& 
     std::vector<std::pair<float, std::uint32_t>> heaviest;
     for (const auto& [key, cell] : cells) heaviest.push_back(cell);
     const std::size_t keep = std::min<std::size_t>(heaviest.size(), 2 * options.peaks_per_region);
-    std::partial_sort(heaviest.begin(), heaviest.begin() + static_cast<std::ptrdiff_t>(keep), heaviest.end(),
-                      [](const auto& a, const auto& b) { return a.first != b.first ? a.first > b.first : a.second < b.second; });
+    std::partial_sort(
+        heaviest.begin(), heaviest.begin() + static_cast<std::ptrdiff_t>(keep), heaviest.end(),
+        [](const auto& a, const auto& b) { return a.first != b.first ? a.first > b.first : a.second < b.second; });
     std::vector<float> best_of_keypoint(members);
     std::vector<PosePeak> peaks;
     for (std::size_t c = 0; c < keep; ++c) {
-      const PosePeak peak = mean_shift(votes, votes[heaviest[c].second], 1.2f * position_cell, 1.5f * options.rotation_cell, best_of_keypoint);
+      const PosePeak peak = mean_shift(votes, votes[heaviest[c].second], 1.2f * position_cell,
+                                       1.5f * options.rotation_cell, best_of_keypoint);
       const bool known = std::any_of(peaks.begin(), peaks.end(), [&](const PosePeak& p) {
         return (p.centre - peak.centre).norm() < position_cell && std::abs(p.rotation.dot(peak.rotation)) > 0.995f;
       });
       if (!known) peaks.push_back(peak);
     }
-    std::stable_sort(peaks.begin(), peaks.end(), [](const PosePeak& a, const PosePeak& b) { return a.weight > b.weight; });
+    std::stable_sort(peaks.begin(), peaks.end(),
+                     [](const PosePeak& a, const PosePeak& b) { return a.weight > b.weight; });
     if (peaks.size() > options.peaks_per_region) peaks.resize(options.peaks_per_region);
     for (const PosePeak& peak : peaks) {
       Seed seed;

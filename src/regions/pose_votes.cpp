@@ -80,7 +80,9 @@ class VoteTable {
   std::vector<std::pair<float, std::uint32_t>> heaviest(std::size_t n) const {
     std::vector<std::pair<float, std::uint32_t>> cells;
     for (const std::uint32_t slot : used_) cells.emplace_back(weights_[slot], first_[slot]);
-    const auto better = [](const auto& a, const auto& b) { return a.first != b.first ? a.first > b.first : a.second < b.second; };
+    const auto better = [](const auto& a, const auto& b) {
+      return a.first != b.first ? a.first > b.first : a.second < b.second;
+    };
     n = std::min(n, cells.size());
     std::partial_sort(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(n), cells.end(), better);
     cells.resize(n);
@@ -130,9 +132,11 @@ std::vector<Seed> vote_seeds_about_axis(const ScanModel& source, const ScanModel
     return Eigen::Quaternionf::FromTwoVectors(axis, Eigen::Vector3f::UnitZ()).toRotationMatrix();
   };
   const Eigen::Matrix3f z_from_source = up(source_axis), z_from_target = up(target_axis);
-  const std::vector<Oriented> from = aligned_keypoints(source, z_from_source), to = aligned_keypoints(target, z_from_target);
+  const std::vector<Oriented> from = aligned_keypoints(source, z_from_source),
+                              to = aligned_keypoints(target, z_from_target);
 
-  // Matches that respect the axis; a target keypoint that everyone matches tells little, nor does a flat similarity profile.
+  // Matches that respect the axis; a target keypoint that everyone matches tells little, nor does a flat similarity
+  // profile.
   struct Allowed {
     std::uint32_t target;
     float yaw;
@@ -172,7 +176,9 @@ std::vector<Seed> vote_seeds_about_axis(const ScanModel& source, const ScanModel
         vote.yaw = match.yaw;
         vote.weight = 1.0f / std::sqrt(static_cast<float>(popularity[match.target]));
         vote.keypoint = local;
-        const auto q = [&](float value, float size) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value / size)) & 0xffff); };
+        const auto q = [&](float value, float size) {
+          return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value / size)) & 0xffff);
+        };
         if (!table.full())
           table.add(q(vote.centre.x(), cell) << 48 | q(vote.centre.y(), cell) << 32 | q(vote.centre.z(), cell) << 16 |
                         q(vote.yaw + kPi, options.yaw_cell_rad),
@@ -194,7 +200,8 @@ std::vector<Seed> vote_seeds_about_axis(const ScanModel& source, const ScanModel
     for (const Peak& peak : peaks) {
       Seed seed;
       seed.source_region = static_cast<std::uint32_t>(r);
-      seed.rotation = z_from_target.transpose() * Eigen::AngleAxisf(peak.yaw, Eigen::Vector3f::UnitZ()).toRotationMatrix() * z_from_source;
+      seed.rotation = z_from_target.transpose() *
+                      Eigen::AngleAxisf(peak.yaw, Eigen::Vector3f::UnitZ()).toRotationMatrix() * z_from_source;
       seed.centre_in_target = z_from_target.transpose() * peak.centre;
       seed.votes = peak.weight;
       seed.generator = "axis votes";

@@ -15,14 +15,18 @@ struct Region {
   std::vector<std::uint32_t> keypoints;              ///< indices into FeatureCloud::keypoints, ascending
   std::vector<std::uint32_t> neighbours;             ///< regions that touch this one, ascending
   template <class F>
-  void fields(F&& f) { f(centre), f(normal), f(radius_m), f(keypoints), f(neighbours); }
+  void fields(F&& f) {
+    f(centre), f(normal), f(radius_m), f(keypoints), f(neighbours);
+  }
 };
 
 struct RegionMap {
   std::vector<Region> regions;
   std::vector<std::uint32_t> region_of_keypoint;
   template <class F>
-  void fields(F&& f) { f(regions), f(region_of_keypoint); }
+  void fields(F&& f) {
+    f(regions), f(region_of_keypoint);
+  }
 };
 
 }  // namespace isthmus

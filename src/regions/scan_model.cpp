@@ -32,7 +32,8 @@ bool ScanModel::seen_through(const Eigen::Vector3f& p, float tolerance_m) const 
   const Eigen::Vector3f ray = p - scan.station;
   const float nearest = scan.free_space.nearest_m[cube_cell(ray, scan.free_space.size)];
   const float range = ray.norm();
-  return std::isfinite(nearest) && range < nearest - tolerance_m - static_cast<float>(scan.station_sigma_m) - kRelativeTolerance * range;
+  return std::isfinite(nearest) &&
+         range < nearest - tolerance_m - static_cast<float>(scan.station_sigma_m) - kRelativeTolerance * range;
 }
 
 }  // namespace isthmus

@@ -29,10 +29,10 @@ class ScanModel {
   SurfaceLookup fine;    ///< nearest point within about 1.5 coarse voxels
   SurfaceLookup coarse;  ///< nearest point within about 3 voxels; only at the coarse level
   Eigen::Vector3f centroid = Eigen::Vector3f::Zero();
-  float extent_m = 0;    ///< radius about the centroid that holds 95 % of the points
+  float extent_m = 0;  ///< radius about the centroid that holds 95 % of the points
 
-  /// True where the station looked through `p` (local frame): p lies in front of everything seen in its direction, by more
-  /// than tolerance_m plus 2 % of the range.
+  /// True where the station looked through `p` (local frame): p lies in front of everything seen in its direction, by
+  /// more than tolerance_m plus 2 % of the range.
   [[nodiscard]] bool seen_through(const Eigen::Vector3f& p, float tolerance_m) const;
 };
 

@@ -8,7 +8,8 @@
 namespace isthmus {
 namespace {
 
-std::vector<std::vector<std::uint32_t>> samples_around_regions(const ScanModel& model, const SeedScoreOptions& options) {
+std::vector<std::vector<std::uint32_t>> samples_around_regions(const ScanModel& model,
+                                                               const SeedScoreOptions& options) {
   const auto& regions = model.regions.regions;
   std::vector<std::vector<std::uint32_t>> samples(regions.size());
   const float sq_radius = options.radius_voxels * options.radius_voxels * model.voxel_m * model.voxel_m;
@@ -24,11 +25,13 @@ std::vector<std::vector<std::uint32_t>> samples_around_regions(const ScanModel& 
 
 }  // namespace
 
-void score_seeds(const ScanModel& source, const ScanModel& target, const SeedScoreOptions& options, std::span<Seed> seeds) {
+void score_seeds(const ScanModel& source, const ScanModel& target, const SeedScoreOptions& options,
+                 std::span<Seed> seeds) {
   const auto samples = samples_around_regions(source, options);
   std::vector<PointVerdicts> verdicts(seeds.size());
   parallel_for_index(seeds.size(), 32, [&](std::size_t k) {
-    verdicts[k] = judge_points(source, target, seeds[k].target_from_source(source), samples[seeds[k].source_region], true);
+    verdicts[k] =
+        judge_points(source, target, seeds[k].target_from_source(source), samples[seeds[k].source_region], true);
   });
   // What most placements of a region explain tells little: a point weighs by how few of the region's seeds support it.
   std::vector<std::vector<float>> weight(samples.size());
@@ -52,8 +55,8 @@ void score_seeds(const ScanModel& source, const ScanModel& target, const SeedSco
   });
 }
 
-std::vector<Seed> best_distinct_seeds(const ScanModel& source, std::vector<Seed> seeds, float position_m, float angle_rad,
-                                      std::size_t keep) {
+std::vector<Seed> best_distinct_seeds(const ScanModel& source, std::vector<Seed> seeds, float position_m,
+                                      float angle_rad, std::size_t keep) {
   std::stable_sort(seeds.begin(), seeds.end(), [](const Seed& a, const Seed& b) { return a.score > b.score; });
   const float min_trace = 1 + 2 * std::cos(angle_rad);
   std::vector<Seed> kept;
@@ -61,7 +64,8 @@ std::vector<Seed> best_distinct_seeds(const ScanModel& source, std::vector<Seed>
     const Eigen::Vector3f place = seed.target_from_source(source) * source.regions.regions[seed.source_region].centre;
     bool known = false;
     for (Seed& other : kept) {
-      const Eigen::Vector3f there = other.target_from_source(source) * source.regions.regions[seed.source_region].centre;
+      const Eigen::Vector3f there =
+          other.target_from_source(source) * source.regions.regions[seed.source_region].centre;
       if ((place - there).squaredNorm() > position_m * position_m) continue;
       if ((other.rotation.transpose() * seed.rotation).trace() < min_trace) continue;
       other.votes += seed.votes;

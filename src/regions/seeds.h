@@ -24,17 +24,18 @@ struct Seed {
 };
 
 struct SeedScoreOptions {
-  float radius_voxels = 40;       ///< source points this close to the region's centre are looked at
+  float radius_voxels = 40;  ///< source points this close to the region's centre are looked at
   std::size_t max_points = 250;
   float contradiction_weight = 5;
 };
 
 /// Sets every seed's score from the points around its region, where its rotation error hardly counts.
-void score_seeds(const ScanModel& source, const ScanModel& target, const SeedScoreOptions& options, std::span<Seed> seeds);
+void score_seeds(const ScanModel& source, const ScanModel& target, const SeedScoreOptions& options,
+                 std::span<Seed> seeds);
 
-/// Best score first; of seeds that put the middle of the scan within `position_m` of each other and turn it alike within
-/// `angle_rad` only the best stays, with the votes of all. At most `keep`.
-std::vector<Seed> best_distinct_seeds(const ScanModel& source, std::vector<Seed> seeds, float position_m, float angle_rad,
-                                      std::size_t keep);
+/// Best score first; of seeds that put the middle of the scan within `position_m` of each other and turn it alike
+/// within `angle_rad` only the best stays, with the votes of all. At most `keep`.
+std::vector<Seed> best_distinct_seeds(const ScanModel& source, std::vector<Seed> seeds, float position_m,
+                                      float angle_rad, std::size_t keep);
 
 }  // namespace isthmus

@@ -30,7 +30,9 @@ double filled_share(const FreeSpace& image) {
     for (std::size_t row = 1; row + 1 < n; ++row)
       for (std::size_t column = 1; column + 1 < n; ++column) {
         const float* cell = &image.nearest_m[(face * n + row) * n + column];
-        if (!std::isfinite(cell[-1]) && !std::isfinite(cell[1]) && !std::isfinite(*(cell - n)) && !std::isfinite(cell[n])) continue;
+        if (!std::isfinite(cell[-1]) && !std::isfinite(cell[1]) && !std::isfinite(*(cell - n)) &&
+            !std::isfinite(cell[n]))
+          continue;
         ++beside;
         filled += std::isfinite(*cell);
       }

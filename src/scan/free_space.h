@@ -9,7 +9,8 @@
 
 namespace isthmus {
 
-/// Cell of the direction `d` (any length, not zero) on a cube map of `size` cells a side: face * size^2 + row * size + column.
+/// Cell of the direction `d` (any length, not zero) on a cube map of `size` cells a side: face * size^2 + row * size +
+/// column.
 inline std::uint32_t cube_cell(const Eigen::Vector3f& d, std::uint32_t size) {
   const float ax = std::abs(d.x()), ay = std::abs(d.y()), az = std::abs(d.z());
   std::uint32_t face;
@@ -27,8 +28,8 @@ inline std::uint32_t cube_cell(const Eigen::Vector3f& d, std::uint32_t size) {
   return (face * size + row) * size + column;
 }
 
-/// The image at the finest resolution (its own, half, a quarter, an eighth) at which most cells beside a return hold one too:
-/// a thinned or sparse scan does not see between its beams. size must be a multiple of 8.
+/// The image at the finest resolution (its own, half, a quarter, an eighth) at which most cells beside a return hold
+/// one too: a thinned or sparse scan does not see between its beams. size must be a multiple of 8.
 FreeSpace at_scan_resolution(const FreeSpace& raw);
 
 /// The image at cells of at least `cell_rad`, but no fewer than 8 a face's side.

@@ -11,19 +11,43 @@ const config::OptionTable<SamplingOptions>& sampling_options_table() {
       "sampling",
       "Reduction of each scan to one point a voxel, with a normal.",
       {
-          {"voxel_m", &SamplingOptions::voxel_m, "m", 1e-6, 1e3, {},
-           "Edge of the sampling voxels, one value for all scans. Automatic: from a probe of every scan, so that a scan keeps "
+          {"voxel_m",
+           &SamplingOptions::voxel_m,
+           "m",
+           1e-6,
+           1e3,
+           {},
+           "Edge of the sampling voxels, one value for all scans. Automatic: from a probe of every scan, so that a "
+           "scan keeps "
            "about target_points points.",
            "docs/stages/sampling.md"},
-          {"target_points", &SamplingOptions::target_points, "", 500, 10000000, {},
-           "Voxel points that a typical scan should keep when voxel_m is automatic. More points see smaller things and cost "
+          {"target_points",
+           &SamplingOptions::target_points,
+           "",
+           500,
+           10000000,
+           {},
+           "Voxel points that a typical scan should keep when voxel_m is automatic. More points see smaller things and "
+           "cost "
            "more time.",
            "docs/stages/sampling.md"},
-          {"drop_no_return", &SamplingOptions::drop_no_return, "", 0, 1, {},
-           "Drop a shell of points at one constant largest range, as some scanners write for beams that never came back.",
+          {"drop_no_return",
+           &SamplingOptions::drop_no_return,
+           "",
+           0,
+           1,
+           {},
+           "Drop a shell of points at one constant largest range, as some scanners write for beams that never came "
+           "back.",
            "SICK LMS scans of 3DTK: 1.8 % of the points at 32.77 m"},
-          {"station", &SamplingOptions::station, "", 0, 0, {"auto", "origin", "unknown"},
-           "Where the scanner stood. auto: the origin (or the file's own word) if the sight lines from there are free; origin: "
+          {"station",
+           &SamplingOptions::station,
+           "",
+           0,
+           0,
+           {"auto", "origin", "unknown"},
+           "Where the scanner stood. auto: the origin (or the file's own word) if the sight lines from there are free; "
+           "origin: "
            "believe it unchecked; unknown: use no free space.",
            "docs/stages/sampling.md"},
       }};
@@ -49,7 +73,8 @@ double robust_extent(const std::vector<Eigen::Vector3f>& points) {
   for (int a = 0; a < 3; ++a) {
     for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i][a];
     std::sort(values.begin(), values.end());
-    size[a] = static_cast<double>(values[values.size() * 95 / 100]) - static_cast<double>(values[values.size() * 5 / 100]);
+    size[a] =
+        static_cast<double>(values[values.size() * 95 / 100]) - static_cast<double>(values[values.size() * 5 / 100]);
   }
   return size.norm();
 }
@@ -58,14 +83,15 @@ double robust_extent(const std::vector<Eigen::Vector3f>& points) {
 
 Result<ScanScale> scale_of_probe(const PointChunk& probe, std::optional<std::uint64_t> num_points, int target_points) {
   constexpr std::size_t kMinPoints = 20;
-  // A voxel should gather more than one raw point, or sampling keeps the scanner's pattern: at most this share of the raw
-  // points may remain.
+  // A voxel should gather more than one raw point, or sampling keeps the scanner's pattern: at most this share of the
+  // raw points may remain.
   constexpr double kMaxShareKept = 0.55;
   std::vector<Eigen::Vector3f> points;
   for (const auto& p : probe.points)
     if (p.allFinite() && !p.isZero()) points.push_back(p);
   if (points.size() < kMinPoints)
-    return fail("only " + std::to_string(points.size()) + " usable points", "", "the scan is empty or holds no coordinates");
+    return fail("only " + std::to_string(points.size()) + " usable points", "",
+                "the scan is empty or holds no coordinates");
   ScanScale scale;
   scale.extent_m = robust_extent(points);
   if (!(scale.extent_m > 0)) return fail("all points are the same", "", "check the file's coordinate columns");

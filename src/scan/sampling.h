@@ -12,10 +12,10 @@
 namespace isthmus {
 
 struct SamplingOptions {
-  std::optional<double> voxel_m;   ///< absent: from the scans, see automatic_voxel_m()
-  int target_points = 15000;       ///< voxel points a scan should be reduced to when the voxel is automatic
+  std::optional<double> voxel_m;  ///< absent: from the scans, see automatic_voxel_m()
+  int target_points = 15000;      ///< voxel points a scan should be reduced to when the voxel is automatic
   bool drop_no_return = true;
-  std::string station = "auto";    ///< auto, origin, unknown
+  std::string station = "auto";  ///< auto, origin, unknown
 };
 const config::OptionTable<SamplingOptions>& sampling_options_table();
 
@@ -27,8 +27,8 @@ struct ScanScale {
 };
 Result<ScanScale> scale_of_probe(const PointChunk& probe, std::optional<std::uint64_t> num_points, int target_points);
 
-/// One voxel for all scans of a survey, from their scales in any order: a robust middle, rounded to a coarse geometric series
-/// so that one more scan seldom changes it. Precondition: at least one scale.
+/// One voxel for all scans of a survey, from their scales in any order: a robust middle, rounded to a coarse geometric
+/// series so that one more scan seldom changes it. Precondition: at least one scale.
 double automatic_voxel_m(std::span<const ScanScale> scales);
 
 /// Bounded memory whatever the number of raw points: one accumulator per occupied voxel.

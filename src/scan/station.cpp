@@ -10,9 +10,9 @@ namespace isthmus {
 StationCheck check_station(std::span<const Eigen::Vector3f> points, std::span<const Eigen::Vector3f> normals,
                            float voxel_m, const Eigen::Vector3f& station) {
   constexpr std::size_t kLines = 1500;
-  constexpr float kNearTargetVoxels = 6;   // surfaces this close to the end belong to the target itself
+  constexpr float kNearTargetVoxels = 6;    // surfaces this close to the end belong to the target itself
   constexpr float kThicknessVoxels = 0.4f;  // a surface point blocks lines passing this close
-  constexpr float kMinCosine = 0.35f;      // surfaces seen edge-on do not block: floors under a flat sight line
+  constexpr float kMinCosine = 0.35f;       // surfaces seen edge-on do not block: floors under a flat sight line
   StationCheck out;
   if (points.empty()) return out;
   const SurfaceLookup lookup(points, voxel_m, 1);

@@ -7,7 +7,7 @@
 namespace isthmus {
 
 struct StationCheck {
-  double blocked = 1;      ///< share of sight lines to points that pass through another surface: about 0 at a true station
+  double blocked = 1;  ///< share of sight lines to points that pass through another surface: about 0 at a true station
   double concentration = 1;  ///< length of the mean direction to the points: 0 all round, 1 one direction
   double median_range_m = 0;
 };

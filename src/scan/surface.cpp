@@ -115,8 +115,8 @@ void flip(std::span<const std::uint32_t> part, std::span<Eigen::Vector3f> normal
 // all round has not.
 std::optional<Eigen::Vector3f> single_view(const std::vector<std::vector<std::uint32_t>>& parts,
                                            std::span<const Eigen::Vector3f> normals) {
-  constexpr int kDirections = 400;       // on a half sphere: about 7 degrees apart
-  constexpr float kMinCosine = 0.15f;    // seen flatter, a noisy normal has no side
+  constexpr int kDirections = 400;     // on a half sphere: about 7 degrees apart
+  constexpr float kMinCosine = 0.15f;  // seen flatter, a noisy normal has no side
   constexpr double kMinConsistent = 0.95;
   constexpr std::size_t kMaxNormals = 6000;
   const std::size_t stride = std::max<std::size_t>(1, normals.size() / kMaxNormals);
@@ -184,8 +184,8 @@ void orient_outwards(std::span<const Eigen::Vector3f> points, float voxel_m, std
     for (const auto& part : parts) flip(part, normals);
 }
 
-void orient_like(std::span<const Eigen::Vector3f> coarse_points, std::span<const Eigen::Vector3f> coarse_normals, float voxel_m,
-                 std::span<const Eigen::Vector3f> points, std::span<Eigen::Vector3f> normals) {
+void orient_like(std::span<const Eigen::Vector3f> coarse_points, std::span<const Eigen::Vector3f> coarse_normals,
+                 float voxel_m, std::span<const Eigen::Vector3f> points, std::span<Eigen::Vector3f> normals) {
   const PointGrid grid(coarse_points, 2 * voxel_m);
   parallel_for_index(points.size(), 256, [&](std::size_t i) {
     float vote = 0;

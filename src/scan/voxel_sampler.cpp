@@ -1,7 +1,7 @@
+#include <fmt/format.h>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 #include <limits>
 #include <numeric>
 
@@ -14,16 +14,16 @@
 namespace isthmus {
 namespace {
 
-constexpr std::uint32_t kCubeSize = 240;          // 0.4 degree cells; coarser where the scan is
-constexpr int kFineRatio = 2;                     // fine voxels a coarse voxel's edge: what is accumulated while streaming
-constexpr std::uint32_t kMinFineCount = 3;        // median raw points a fine voxel below which the fine level is left out
+constexpr std::uint32_t kCubeSize = 240;    // 0.4 degree cells; coarser where the scan is
+constexpr int kFineRatio = 2;               // fine voxels a coarse voxel's edge: what is accumulated while streaming
+constexpr std::uint32_t kMinFineCount = 3;  // median raw points a fine voxel below which the fine level is left out
 constexpr std::uint32_t kMinVoxelNeighbours = 4;  // fewer voxels around (itself included): a stray point
 constexpr double kLogRangeStep = 2e-4;            // relative width of a bin of the range histogram
 constexpr double kSmallestRange = 1e-5;
-constexpr std::size_t kRangeBins = 140000;        // up to 1e-5 * exp(28) m: beyond any range
-// The origin is believed to be the station unless the points speak against it. Measured at true stations: up to 19 % blocked
-// sight lines in thinned real scans, 35 % in furnished offices, concentration up to 0.81 (a SICK on a tilt unit); fused
-// fragments and single views of objects have a concentration above 0.88.
+constexpr std::size_t kRangeBins = 140000;  // up to 1e-5 * exp(28) m: beyond any range
+// The origin is believed to be the station unless the points speak against it. Measured at true stations: up to 19 %
+// blocked sight lines in thinned real scans, 35 % in furnished offices, concentration up to 0.81 (a SICK on a tilt
+// unit); fused fragments and single views of objects have a concentration above 0.88.
 constexpr double kMaxBlocked = 0.45;
 constexpr double kMaxConcentration = 0.85;
 // Closer than this, and not all round, it is an object before a camera in some frame of its own: no terrestrial scanner
@@ -36,7 +36,7 @@ struct Voxel {
   std::uint32_t count = 0;
   float min_range_m = std::numeric_limits<float>::infinity();
   float max_range_m = 0;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();      // of offsets from the voxel's centre
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();                              // of offsets from the voxel's centre
   Eigen::Matrix<double, 6, 1> squares = Eigen::Matrix<double, 6, 1>::Zero();  // xx xy xz yy yz zz of the same offsets
 };
 
@@ -45,8 +45,8 @@ std::size_t range_bin(double range) {
   return static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(kRangeBins - 1)));
 }
 
-// A shell is a spike at the far end of the ranges: at least 0.3 % of all points within 0.1 %, hardly a point beyond, and far
-// denser than the ranges just before it (a tunnel's or a dome's wall is not).
+// A shell is a spike at the far end of the ranges: at least 0.3 % of all points within 0.1 %, hardly a point beyond,
+// and far denser than the ranges just before it (a tunnel's or a dome's wall is not).
 std::optional<double> find_no_return_range(const std::vector<std::uint32_t>& histogram, std::uint64_t total) {
   constexpr std::size_t kHalf = 2, kContext = 100;
   constexpr std::uint64_t kMinShell = 30;  // in a small scan one far point is 0.3 %
@@ -77,7 +77,8 @@ struct VoxelSampler::State {
   bool station_from_file = false;
   std::vector<Voxel> voxels;
   std::vector<std::uint32_t> slots;  // open addressing into voxels: index + 1
-  std::size_t last = std::numeric_limits<std::size_t>::max();  // voxel of the previous point: neighbours in a file are close
+  std::size_t last =
+      std::numeric_limits<std::size_t>::max();  // voxel of the previous point: neighbours in a file are close
   std::uint64_t num_read = 0, num_dropped = 0;
   FreeSpace raw;
   std::vector<std::uint32_t> ranges;
@@ -181,8 +182,9 @@ void VoxelSampler::add(const PointChunk& chunk) {
     Voxel& v = s.voxel(key);
     const Eigen::Vector3d d = q - (cell.cast<double>().array() + 0.5).matrix() * s.fine_voxel_m;
     v.sum += d;
-    v.squares += (Eigen::Matrix<double, 6, 1>() << d[0] * d[0], d[0] * d[1], d[0] * d[2], d[1] * d[1], d[1] * d[2],
-                  d[2] * d[2]).finished();
+    v.squares +=
+        (Eigen::Matrix<double, 6, 1>() << d[0] * d[0], d[0] * d[1], d[0] * d[2], d[1] * d[1], d[1] * d[2], d[2] * d[2])
+            .finished();
     if (v.count < std::numeric_limits<std::uint32_t>::max()) ++v.count;
     if (s.candidate_station) {
       const Eigen::Vector3f ray = p - station;
@@ -222,7 +224,8 @@ std::vector<Voxel> merged(const std::vector<Voxel>& fine, double fine_voxel_m) {
   };
   std::vector<std::pair<std::uint64_t, std::uint32_t>> order(fine.size());
   for (std::uint32_t i = 0; i < fine.size(); ++i)
-    order[i] = {voxel_key({coarse_part(fine[i].key, 42), coarse_part(fine[i].key, 21), coarse_part(fine[i].key, 0)}), i};
+    order[i] = {voxel_key({coarse_part(fine[i].key, 42), coarse_part(fine[i].key, 21), coarse_part(fine[i].key, 0)}),
+                i};
   std::sort(order.begin(), order.end());
   std::vector<Voxel> out;
   for (const auto& [key, i] : order) {
@@ -232,8 +235,9 @@ std::vector<Voxel> merged(const std::vector<Voxel>& fine, double fine_voxel_m) {
     const Eigen::Vector3d d = voxel_centre(f.key, fine_voxel_m) - voxel_centre(key, fine_voxel_m * kFineRatio);
     const double n = f.count;
     const auto shifted = [&](int a, int b) { return d[a] * f.sum[b] + d[b] * f.sum[a] + n * d[a] * d[b]; };
-    v.squares += f.squares + (Eigen::Matrix<double, 6, 1>() << shifted(0, 0), shifted(0, 1), shifted(0, 2), shifted(1, 1),
-                              shifted(1, 2), shifted(2, 2)).finished();
+    v.squares += f.squares + (Eigen::Matrix<double, 6, 1>() << shifted(0, 0), shifted(0, 1), shifted(0, 2),
+                              shifted(1, 1), shifted(1, 2), shifted(2, 2))
+                                 .finished();
     v.sum += f.sum + n * d;
     v.count += f.count;
   }
@@ -311,10 +315,11 @@ Result<SampledScan> VoxelSampler::finish() {
   // No scanner stands at the mean of what it sees to a ten-thousandth: such a cloud was centred by a program.
   constexpr double kCentred = 1e-4;
   const auto num_rays = static_cast<double>(s.num_read);
-  const bool centred = s.candidate_station && !s.station_from_file &&
-                       s.ray_sum.norm() < kCentred * std::sqrt(s.sq_range_sum * num_rays);
+  const bool centred =
+      s.candidate_station && !s.station_from_file && s.ray_sum.norm() < kCentred * std::sqrt(s.sq_range_sum * num_rays);
   StationCheck check;
-  if (s.candidate_station) check = check_station(out.points, out.normals, static_cast<float>(s.voxel_m), *s.candidate_station);
+  if (s.candidate_station)
+    check = check_station(out.points, out.normals, static_cast<float>(s.voxel_m), *s.candidate_station);
   const bool object = check.median_range_m < kObjectRangeM && check.concentration > kObjectConcentration;
   const bool plausible = check.blocked < kMaxBlocked && !object && check.concentration < kMaxConcentration;
   const bool believed = s.candidate_station && (s.options.station == "origin" || (plausible && !centred));
@@ -337,8 +342,8 @@ Result<SampledScan> VoxelSampler::finish() {
     orient_to_station(out.fine.points, *s.candidate_station, out.fine.normals);
     out.free_space = dilated_free_space(
         at_least_cells_of(at_scan_resolution(s.raw), out.station_sigma_m / std::max(check.median_range_m, 1e-9)));
-    out.notes.push_back(fmt::format("the cloud is centred on its mean: its station is taken to be there within {:.2g} m",
-                                    out.station_sigma_m));
+    out.notes.push_back(fmt::format(
+        "the cloud is centred on its mean: its station is taken to be there within {:.2g} m", out.station_sigma_m));
   } else {
     orient_outwards(out.points, static_cast<float>(s.voxel_m), out.normals);
     orient_like(out.points, out.normals, static_cast<float>(s.voxel_m), out.fine.points, out.fine.normals);

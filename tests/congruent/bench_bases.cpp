@@ -88,7 +88,8 @@ Tally tally(const char* bases, Sample sample, double excess_m) {
 int main() {
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   fmt::print(
-      "| surface | overlap too long by | bases | trials that voted for the truth | right first | error of the right, m | CPU ms |\n");
+      "| surface | overlap too long by | bases | trials that voted for the truth | right first | error of the right, m "
+      "| CPU ms |\n");
   fmt::print("|---|---|---|---|---|---|---|\n");
   const std::pair<const char*, Sample> surfaces[] = {
       {"yard", test::sample_yard}, {"hills", test::sample_hills}, {"balls", test::sample_balls}};

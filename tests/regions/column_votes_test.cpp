@@ -69,8 +69,10 @@ TEST(ColumnVotes, PostsInAPlainAreFoundByWhereTheyStand) {
   const Transform world_from_source = pose_of({-5, 2, 1.7}, {0, 0, 2.2}), world_from_target = pose_of({4, -3, 1.7});
   testing::SamplingSetup setup;
   setup.options.station = "origin";
-  const ScanProduct a = testing::product_of(testing::scan_scene(plain, world_from_source, {120000, 25, 0.004, 1}), 0.4, setup);
-  const ScanProduct b = testing::product_of(testing::scan_scene(plain, world_from_target, {120000, 25, 0.004, 2}), 0.4, setup);
+  const ScanProduct a =
+      testing::product_of(testing::scan_scene(plain, world_from_source, {120000, 25, 0.004, 1}), 0.4, setup);
+  const ScanProduct b =
+      testing::product_of(testing::scan_scene(plain, world_from_target, {120000, 25, 0.004, 2}), 0.4, setup);
   const ScanModel source(a.sampled, a.features, a.regions, ModelLevel::coarse);
   const ScanModel target(b.sampled, b.features, b.regions, ModelLevel::coarse);
   const auto seeds = vote_seeds_by_columns(source, target, Eigen::Vector3f::UnitZ(), Eigen::Vector3f::UnitZ(), {});

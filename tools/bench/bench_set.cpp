@@ -80,8 +80,9 @@ Result<SetPlace> set_place_from(const std::string& text) {
   place.folder = text.substr(0, colon);
   if (colon != std::string::npos) {
     const auto kind = scramble_from(text.substr(colon + 1));
-    if (!kind) return fail(fmt::format("unknown kind of turning '{}'", text.substr(colon + 1)), text,
-                           "none, yaw, full or object");
+    if (!kind)
+      return fail(fmt::format("unknown kind of turning '{}'", text.substr(colon + 1)), text,
+                  "none, yaw, full or object");
     place.scramble = *kind;
   }
   if (!fs::is_directory(place.folder)) return fail("no such folder", place.folder.string());

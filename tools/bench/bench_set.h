@@ -30,8 +30,8 @@ struct SetPlace {
 /// "DIR" or "DIR:none|yaw|full|object".
 Result<SetPlace> set_place_from(const std::string& text);
 
-/// Copies the set to `to` as PLY, each scan moved by a transform drawn from the seed and its name, with poses.gt.txt and
-/// overlaps.gt.txt (computed with `voxel_m` if the set has none). A folder that is already there is taken as it is.
+/// Copies the set to `to` as PLY, each scan moved by a transform drawn from the seed and its name, with poses.gt.txt
+/// and overlaps.gt.txt (computed with `voxel_m` if the set has none). A folder that is already there is taken as it is.
 Result<void> scramble_set(const SetPlace& set, std::uint64_t seed, std::optional<double> voxel_m,
                           const std::filesystem::path& to);
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "pipelines/frames.h"
 #include "pairwise/hypothesis.h"
+#include "pipelines/frames.h"
 #include "regions/overlap_score.h"
 
 namespace isthmus::bench {
@@ -45,8 +45,11 @@ struct Band {
   const char* name;
   double low, high;
 };
-constexpr Band kBands[] = {{"above 30 %", 0.3, 2}, {"20-30 %", 0.2, 0.3}, {"10-20 %", 0.1, 0.2},
-                           {"5-10 %", 0.05, 0.1},  {"below 5 %", -1, 0.05}};
+constexpr Band kBands[] = {{"above 30 %", 0.3, 2},
+                           {"20-30 %", 0.2, 0.3},
+                           {"10-20 %", 0.1, 0.2},
+                           {"5-10 %", 0.05, 0.1},
+                           {"below 5 %", -1, 0.05}};
 
 double seconds_of(const PairTrial& t) {
   double sum = 0;
@@ -102,7 +105,8 @@ PairTrial run_trial(const BenchSet& set, std::size_t source_index, std::size_t t
   trial.rank = {first_rank(trace.seeds, is_near), first_rank(trace.grown, is_near), first_rank(trace.polished, right),
                 first_rank(trace.congruent, right), first_rank(trace.fine, right)};
   if (trial.result.target_from_source) {
-    const ScanModel fine_from(source.product.sampled, source.product.features, source.product.regions, ModelLevel::fine);
+    const ScanModel fine_from(source.product.sampled, source.product.features, source.product.regions,
+                              ModelLevel::fine);
     const ScanModel fine_to(target.product.sampled, target.product.features, target.product.regions, ModelLevel::fine);
     const auto weighed = [&](const Transform& t) {
       std::vector<Hypothesis> alone(1);
@@ -173,7 +177,8 @@ std::string table_of(const std::vector<PairTrial>& trials) {
     }
     text += fmt::format("| {} | {} | {} ({:.0f} %) | {} | {} |", band.name, in.size(), right,
                         100.0 * right / static_cast<double>(in.size()), accepted, wrong);
-    for (std::size_t stage = 0; stage < kTracedStages.size(); ++stage) text += fmt::format(" {} |", cell_of_ranks(in, stage));
+    for (std::size_t stage = 0; stage < kTracedStages.size(); ++stage)
+      text += fmt::format(" {} |", cell_of_ranks(in, stage));
     text += fmt::format(" {:.2f} | {:.2f} | {:.2f} |\n", quantile(seconds, 0.5), quantile(seconds, 0.95),
                         quantile(seconds, 1));
   }

@@ -22,7 +22,8 @@ struct PairTrial {
   /// Place of the first true hypothesis after each stage, from 1; 0 = none. After regions and growth a hypothesis is
   /// true when it moves the truly overlapping points by less than kNearVoxels, later when it is right.
   std::array<int, kTracedStages.size()> rank{};
-  /// Score (without rarity) and support of the true and of the best pose on the fine level: where the truth scores lower, better proposals would not have helped.
+  /// Score (without rarity) and support of the true and of the best pose on the fine level: where the truth scores
+  /// lower, better proposals would not have helped.
   double truth_score = 0, best_score = 0;
   double truth_support = 0, best_support = 0;
   PairResult result;

@@ -347,6 +347,14 @@ class PairSearch {
     return seeds;
   }
 
+  /// Poses that somebody proposes, polished like the others.
+  std::vector<Hypothesis> hypotheses_of(std::span<const Transform> priors) {
+    std::vector<Hypothesis> out(priors.size());
+    for (std::size_t k = 0; k < priors.size(); ++k) out[k].target_from_source = priors[k], out[k].generator = "prior";
+    polish_all(source_, target_, kPolishPoints, kPolishSteps, out);
+    return out;
+  }
+
   /// Grows the seeds, polishes what is new and weighs it against what is there.
   void add(const std::vector<Seed>& seeds, std::vector<Hypothesis>& hypotheses) {
     const double voxel = source_.scan.voxel_m;
@@ -460,13 +468,7 @@ PairResult register_pair(const ScanProduct& source_product, const ScanProduct& t
   watch.lap("lookups");
 
   PairSearch search(source, target, options, watch, result.counts, trace);
-  std::vector<Hypothesis> hypotheses;
-  for (const Transform& prior : priors) {
-    Hypothesis h;
-    h.target_from_source = prior;
-    h.generator = "prior";
-    hypotheses.push_back(h);
-  }
+  std::vector<Hypothesis> hypotheses = search.hypotheses_of(priors);
   // What is found by whole plans first; matching descriptors only when that does not settle the pair.
   search.add(search.seeds_of(true), hypotheses);
   if (!decisive(source, hypotheses)) search.add(search.seeds_of(false), hypotheses);

@@ -159,7 +159,7 @@ TEST_F(Register, leaves_no_folder_behind_when_there_is_nothing_to_do) {
   fs::create_directories(scans_);
   const Said said = register_scans();
   EXPECT_EQ(said.exit_code, 1);
-  EXPECT_NE(said.err.find(scans_.string() + ": no scans found (files are known by their extensions: ptx ply"),
+  EXPECT_NE(said.err.find(scans_.string() + ": no scans found (files are known by their extensions: e57 ptx ply"),
             std::string::npos)
       << said.err;
   EXPECT_FALSE(fs::exists(out_));

@@ -20,20 +20,28 @@ bool vetoed(const PairEvidence& e) {
   return e.contradiction > kMaxContradiction && contradicting_share(e) > kMaxShare;
 }
 
+// Where one direction is hardly observed and a neighbouring pose explains nearly as much, the pair slides: right
+// perhaps, but not to two voxels.
+bool slides(const PairEvidence& e) {
+  constexpr double kAsGood = 0.85, kHardlyObserved = 0.07;
+  return e.near_score > kAsGood * e.score && e.observability < kHardlyObserved;
+}
+
 }  // namespace
 
 double probability_of(const PairEvidence& e) {
   // Logistic regression over 544 pairs; the table of sets and the check with each set left out in turn are in
   // docs/stages/verdict.md. The floors keep tiny scores from looking like clear margins.
   constexpr double kIntercept = -1.99, kLogScore = 1.42, kLogMargin = 4.31, kContradiction = -1.40, kNear = -1.07;
-  constexpr double kLeastScore = 1e-3, kLeastRival = 0.02, kVetoedProbability = 0.5;
+  constexpr double kLeastScore = 1e-3, kLeastRival = 0.02, kVetoedProbability = 0.5, kSlidingProbability = 0.9;
   const double score = std::max(e.score, kLeastScore);
   const double logit = kIntercept + kLogScore * (std::log(score) + 3) +
                        kLogMargin * std::log(score / std::max(e.rival_score, kLeastRival)) +
                        kContradiction * std::min(contradicting_share(e), 0.3) +
                        kNear * std::min(e.near_score / score, 1.0);
   const double p = 1 / (1 + std::exp(-logit));
-  return vetoed(e) ? std::min(p, kVetoedProbability) : p;
+  if (vetoed(e)) return std::min(p, kVetoedProbability);
+  return slides(e) ? std::min(p, kSlidingProbability) : p;
 }
 
 void judge(const PairEvidence& e, const PairOptions& options, PairResult& result) {
@@ -61,9 +69,13 @@ void judge(const PairEvidence& e, const PairOptions& options, PairResult& result
   if (vetoed(e))
     result.reason =
         fmt::format("{:.1f} % of the points stand where the other station saw through", 100 * e.contradiction);
+  else if (slides(e) && e.score >= kClearMargin * e.rival_score)
+    result.reason = fmt::format("the place is hardly fixed: a neighbouring pose explains {:.0f} % as much",
+                                100 * std::min(1.0, e.near_score / std::max(e.score, 1e-9)));
   else if (e.score < kClearMargin * e.rival_score)
-    result.reason = fmt::format("a rival pose explains the scans {:.0f} % as well",
-                                100 * std::min(1.0, e.rival_score / std::max(e.score, 1e-9)));
+    result.reason =
+        fmt::format("a rival pose, {:.0f} voxels and {:.0f} degrees away, explains the scans {:.0f} % as well",
+                    e.rival_voxels, e.rival_deg, 100 * std::min(1.0, e.rival_score / std::max(e.score, 1e-9)));
   else
     result.reason = fmt::format("only {:.1f} % of the smaller scan is explained", 100 * e.support);
 }

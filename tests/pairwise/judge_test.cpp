@@ -37,6 +37,30 @@ TEST(Probability, IsAProbabilityForAnyEvidence) {
   EXPECT_LT(nothing, 0.5);
 }
 
+TEST(Verdict, ANeighbourAsGoodAlongAnUnobservedDirectionIsAmbiguous) {
+  PairEvidence e = good_evidence();
+  e.observability = 0.03;
+  e.near_score = 0.95 * e.score;
+  PairResult result;
+  judge(e, PairOptions{}, result);
+  EXPECT_EQ(result.verdict, Verdict::ambiguous);
+  EXPECT_NE(result.reason.find("hardly fixed"), std::string::npos) << result.reason;
+  for (const auto& [near_share, observability] : {std::pair(0.5, 0.03), std::pair(0.95, 0.5)}) {
+    e.near_score = near_share * e.score, e.observability = observability;
+    judge(e, PairOptions{}, result);
+    EXPECT_EQ(result.verdict, Verdict::accepted) << result.reason;
+  }
+}
+
+TEST(Verdict, ARivalIsNamedByWhereItLies) {
+  PairEvidence e = good_evidence();
+  e.rival_score = 0.9 * e.score, e.rival_voxels = 42, e.rival_deg = 91;
+  PairResult result;
+  judge(e, PairOptions{}, result);
+  EXPECT_EQ(result.verdict, Verdict::ambiguous);
+  EXPECT_NE(result.reason.find("42 voxels and 91 degrees"), std::string::npos) << result.reason;
+}
+
 TEST(Probability, GrowsWithTheScoreAndFallsWithTheRivalAndContradiction) {
   double last = 0;
   for (const double score : {0.005, 0.02, 0.05, 0.1, 0.2, 0.5}) {

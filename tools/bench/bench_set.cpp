@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "base/atomic_file.h"
 #include "base/parallel.h"
@@ -89,7 +90,8 @@ Result<SetPlace> set_place_from(const std::string& text) {
   return place;
 }
 
-Result<void> scramble_set(const SetPlace& set, std::uint64_t seed, std::optional<double> voxel_m, const fs::path& to) {
+Result<void> scramble_set(const SetPlace& set, std::uint64_t seed, std::optional<double> voxel_m,
+                          const Degradation& degradation, const fs::path& to) {
   if (fs::exists(to / "poses.gt.txt")) return {};
   const auto truth_file = evaluate::truth_beside(set.folder);
   if (!truth_file) return fail("no ground truth (poses.gt.txt, poses_refined.txt or poses.txt)", set.folder.string());
@@ -97,21 +99,31 @@ Result<void> scramble_set(const SetPlace& set, std::uint64_t seed, std::optional
   if (!truth) return tl::unexpected(truth.error());
   const auto overlaps = overlaps_of(set.folder, *truth, voxel_m);
   if (!overlaps) return tl::unexpected(overlaps.error());
+  const std::optional<double> evaluation_voxel = overlaps->voxel_m ? overlaps->voxel_m : voxel_m;
+  if (degradation.noise_voxels > 0 && !evaluation_voxel)
+    return fail("noise is counted in evaluation voxels and overlaps.gt.txt names none", set.folder.string(),
+                "give it with --voxel");
   fs::create_directories(to);
   std::string poses;
-  for (const auto& [name, common_from_scan] : *truth) {
-    const auto points = evaluate::load_points(set.folder, name);
-    if (!points) return tl::unexpected(points.error());
+  std::set<std::string> thinned;
+  for (std::size_t k = 0; k < truth->size(); ++k) {
+    const auto& [name, common_from_scan] = (*truth)[k];
+    if (degradation.density < 1 && k % 2 == 1) thinned.insert(name);
+    const auto loaded = evaluate::load_points(set.folder, name);
+    if (!loaded) return tl::unexpected(loaded.error());
+    const evaluate::Points worse = degraded(*loaded, degradation, thinned.contains(name), evaluation_voxel.value_or(0),
+                                            Rng(seed_of(seed_of(seed, "degraded"), name)));
     Rng rng(seed_of(seed, name));
-    const Transform turned_from_scan = random_motion(set.scramble, longest_side(*points), rng);
+    const Transform turned_from_scan = random_motion(set.scramble, longest_side(*loaded), rng);
     PointChunk chunk;
-    for (const auto& p : *points) chunk.points.push_back((turned_from_scan * p).cast<float>());
+    for (const auto& p : worse) chunk.points.push_back((turned_from_scan * p).cast<float>());
     if (const auto written = io::write_scan(to / ply_name(name), chunk); !written) return written;
     poses += pose_line(ply_name(name), common_from_scan * turned_from_scan.inverse());
   }
-  std::string table = fmt::format("# voxel {:g}\n", overlaps->voxel_m.value_or(voxel_m.value_or(0)));
+  std::string table = fmt::format("# voxel {:g}\n", evaluation_voxel.value_or(0));
   for (const auto& [pair, overlap] : overlaps->of)
-    table += fmt::format("{} {} {:.4f}\n", ply_name(pair.first), ply_name(pair.second), overlap);
+    if (degradation.density == 1 || thinned.contains(pair.first) != thinned.contains(pair.second))
+      table += fmt::format("{} {} {:.4f}\n", ply_name(pair.first), ply_name(pair.second), overlap);
   if (const auto written = write_file_atomically(to / "overlaps.gt.txt", table); !written) return written;
   return write_file_atomically(to / "poses.gt.txt", poses);
 }

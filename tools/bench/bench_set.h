@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "bench/degrade.h"
 #include "evaluate/inputs.h"
 #include "pipelines/settings.h"
 
@@ -30,10 +31,12 @@ struct SetPlace {
 /// "DIR" or "DIR:none|yaw|full|object".
 Result<SetPlace> set_place_from(const std::string& text);
 
-/// Copies the set to `to` as PLY, each scan moved by a transform drawn from the seed and its name, with poses.gt.txt
-/// and overlaps.gt.txt (computed with `voxel_m` if the set has none). A folder that is already there is taken as it is.
+/// Copies the set to `to` as PLY, each scan made worse by `degradation` and moved by a transform drawn from the seed
+/// and its name, with poses.gt.txt and overlaps.gt.txt (those of the scans as they were; computed with `voxel_m` if the
+/// set has none). Of scans with unlike densities only the pairs of a thinned and a whole one are listed. A folder that
+/// is already there is taken as it is.
 Result<void> scramble_set(const SetPlace& set, std::uint64_t seed, std::optional<double> voxel_m,
-                          const std::filesystem::path& to);
+                          const Degradation& degradation, const std::filesystem::path& to);
 
 struct BenchScan {
   std::string name;

@@ -9,6 +9,7 @@
 
 #include "base/atomic_file.h"
 #include "bench/pair_trial.h"
+#include "bench/whole_clouds.h"
 
 namespace {
 
@@ -19,6 +20,7 @@ namespace fs = std::filesystem;
 struct Variant {
   std::string name;
   std::vector<std::string> assignments;
+  bool whole_clouds = false;  ///< the baseline instead of the method
 };
 
 struct BenchRun {
@@ -32,22 +34,25 @@ struct BenchRun {
   double min_overlap = 0;
   int threads = static_cast<int>(std::thread::hardware_concurrency());
   bool ablation = false;
+  bool whole_clouds = false;
+  WholeClouds baseline;
+  Degradation degradation;
 };
 
 // Each stage left out in turn, and plain Super4PCS on the whole clouds' overlap with nothing before it.
 std::vector<Variant> ablation_variants() {
   std::vector<Variant> out;
   for (const char* part : {"growth", "super4pcs", "fine", "rarity", "free_space"})
-    out.push_back({fmt::format("without {}", part), {fmt::format("pair.without=[{}]", part)}});
-  out.push_back({"axis votes only", {"pair.generators=[axis_votes]"}});
-  out.push_back({"pair votes only", {"pair.generators=[pair_votes]"}});
+    out.push_back({fmt::format("without {}", part), {fmt::format("pair.without=[{}]", part)}, false});
+  out.push_back({"axis votes only", {"pair.generators=[axis_votes]"}, false});
+  out.push_back({"pair votes only", {"pair.generators=[pair_votes]"}, false});
   return out;
 }
 
 // "name:key=value;key=value"
 Variant variant_from(const std::string& text) {
   const std::size_t colon = text.find(':');
-  Variant variant{text.substr(0, colon), {}};
+  Variant variant{text.substr(0, colon), {}, false};
   std::size_t at = colon;
   while (at != std::string::npos && at + 1 < text.size()) {
     const std::size_t end = text.find(';', at + 1);
@@ -58,7 +63,8 @@ Variant variant_from(const std::string& text) {
 }
 
 // Pairs side by side, each on one thread, so that seconds are those of one core.
-std::vector<PairTrial> trials_of(const BenchSet& set, const PairOptions& options, double min_overlap, int threads) {
+template <class RunPair>
+std::vector<PairTrial> trials_of(const BenchSet& set, const RunPair& run_pair, double min_overlap, int threads) {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (const auto& [pair, overlap] : set.overlap)
     if (overlap >= min_overlap) pairs.push_back(pair);
@@ -70,7 +76,7 @@ std::vector<PairTrial> trials_of(const BenchSet& set, const PairOptions& options
       oneapi::tbb::task_arena arena(1);
       arena.execute([&] {
         for (std::size_t i = next++; i < pairs.size(); i = next++)
-          trials[i] = run_trial(set, pairs[i].second, pairs[i].first, options);
+          trials[i] = run_pair(set, pairs[i].second, pairs[i].first);
       });
     });
   workers.clear();
@@ -78,7 +84,8 @@ std::vector<PairTrial> trials_of(const BenchSet& set, const PairOptions& options
 }
 
 Result<void> run(const BenchRun& bench) {
-  std::vector<Variant> variants{{"default", {}}};
+  std::vector<Variant> variants{{"default", {}, false}};
+  if (bench.whole_clouds) variants.push_back({"super4pcs on whole clouds", {}, true});
   if (bench.ablation)
     for (Variant& v : ablation_variants()) variants.push_back(std::move(v));
   for (const std::string& text : bench.variants) variants.push_back(variant_from(text));
@@ -88,9 +95,11 @@ Result<void> run(const BenchRun& bench) {
     if (!place) return tl::unexpected(place.error());
     const std::string parent = fs::absolute(place->folder).lexically_normal().filename().string();
     const std::string kind = text.rfind(':') == std::string::npos ? "full" : text.substr(text.rfind(':') + 1);
-    folders.push_back(fs::path(bench.work) / fmt::format("{}-{}-{}", parent, kind, bench.seed));
+    folders.push_back(fs::path(bench.work) /
+                      fmt::format("{}-{}-{}{}", parent, kind, bench.seed, suffix_of(bench.degradation)));
     const auto voxel = bench.voxel_m > 0 ? std::optional(bench.voxel_m) : std::nullopt;
-    if (const auto done = scramble_set(*place, bench.seed, voxel, folders.back()); !done) return done;
+    if (const auto done = scramble_set(*place, bench.seed, voxel, bench.degradation, folders.back()); !done)
+      return done;
   }
   for (const Variant& variant : variants) {
     pipelines::Settings settings;
@@ -101,7 +110,11 @@ Result<void> run(const BenchRun& bench) {
     for (const fs::path& folder : folders) {
       const auto set = load_set(folder, settings);
       if (!set) return tl::unexpected(set.error());
-      const auto more = trials_of(*set, settings.pair, bench.min_overlap, bench.threads);
+      const auto run_pair = [&](const BenchSet& of, std::size_t source, std::size_t target) {
+        return variant.whole_clouds ? run_whole_clouds(of, source, target, bench.baseline)
+                                    : run_trial(of, source, target, settings.pair);
+      };
+      const auto more = trials_of(*set, run_pair, bench.min_overlap, bench.threads);
       fmt::print(stderr, "{}: {}: {} pairs\n", variant.name, set->name, more.size());
       trials.insert(trials.end(), more.begin(), more.end());
     }
@@ -133,6 +146,22 @@ int main(int argc, char** argv) {
       ->allow_extra_args(false);
   app.add_option("--variant", bench.variants, "NAME:key=value;key=value: one more variant beside the default")
       ->allow_extra_args(false);
+  app.add_option("--noise", bench.degradation.noise_voxels,
+                 "Normal error on every coordinate, standard deviation in evaluation voxels")
+      ->check(CLI::Range(0.0, 100.0));
+  app.add_option("--outliers", bench.degradation.outliers,
+                 "Share of the points that are spread evenly over the scan's bounding box")
+      ->check(CLI::Range(0.0, 0.95));
+  app.add_option("--density", bench.degradation.density,
+                 "Share of its points that every second scan keeps; only pairs of unlike densities are run")
+      ->check(CLI::Range(0.001, 1.0));
+  app.add_flag("--whole-clouds", bench.whole_clouds, "Also Super4PCS on the whole sampled clouds, for comparison");
+  app.add_option("--whole-overlap", bench.baseline.overlap, "Overlap that it assumes")
+      ->check(CLI::Range(0.01, 1.0))
+      ->capture_default_str();
+  app.add_option("--whole-trials", bench.baseline.max_trials, "Bases that it tries at most")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
   app.add_flag("--ablation", bench.ablation, "Also each stage left out in turn");
   CLI11_PARSE(app, argc, argv);
   if (const auto done = run(bench); !done) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "bench/processor_time.h"
 #include "pairwise/hypothesis.h"
 #include "pipelines/frames.h"
 #include "regions/overlap_score.h"
@@ -15,12 +16,6 @@ namespace {
 
 constexpr double kRightDeg = 2, kRightVoxels = 2;
 constexpr double kNearDeg = 10;
-
-bool is_right(const Transform& t, const Transform& truth, const Eigen::Vector3d& centroid, double voxel_m) {
-  const Transform d = truth.inverse() * t;
-  return rotation_angle_rad(d.linear()) * 180 / std::numbers::pi < kRightDeg &&
-         (d * centroid - centroid).norm() < kRightVoxels * voxel_m;
-}
 
 // Mean of the source points that the true pose puts on the target's surface; the centroid where there are none.
 Eigen::Vector3d middle_of_overlap(const ScanModel& source, const ScanModel& target, const Transform& truth) {
@@ -45,17 +40,8 @@ struct Band {
   const char* name;
   double low, high;
 };
-constexpr Band kBands[] = {{"above 30 %", 0.3, 2},
-                           {"20-30 %", 0.2, 0.3},
-                           {"10-20 %", 0.1, 0.2},
-                           {"5-10 %", 0.05, 0.1},
-                           {"below 5 %", -1, 0.05}};
-
-double seconds_of(const PairTrial& t) {
-  double sum = 0;
-  for (const auto& [stage, seconds] : t.result.seconds_by_stage) sum += seconds;
-  return sum;
-}
+constexpr Band kBands[] = {{"above 30 %", 0.3, 2}, {"20-30 %", 0.2, 0.3},   {"10-20 %", 0.1, 0.2},
+                           {"5-10 %", 0.05, 0.1},  {"below 5 %", -1, 0.05}, {"all", -1, 2}};
 
 double quantile(std::vector<double> values, double q) {
   if (values.empty()) return 0;
@@ -73,26 +59,56 @@ std::string cell_of_ranks(const std::vector<const PairTrial*>& trials, std::size
 
 }  // namespace
 
+double PairTruth::rotation_deg(const Transform& t) const {
+  return rotation_angle_rad((target_from_source.inverse() * t).linear()) * 180 / std::numbers::pi;
+}
+
+double PairTruth::translation_m(const Transform& t) const {
+  return (target_from_source.inverse() * t * centroid - centroid).norm();
+}
+
+bool PairTruth::is_right(const Transform& t) const {
+  return rotation_deg(t) < kRightDeg && translation_m(t) < kRightVoxels * voxel_m;
+}
+
+PairTruth truth_of(const BenchSet& set, std::size_t source_index, std::size_t target_index) {
+  const BenchScan &source = set.scans[source_index], &target = set.scans[target_index];
+  const Eigen::Vector3d origin = source.product.sampled.local_origin_in_scan;
+  PairTruth truth;
+  truth.target_from_source = pipelines::between_scan_frames(target.common_from_scan.inverse() * source.common_from_scan,
+                                                            -origin, -target.product.sampled.local_origin_in_scan);
+  truth.centroid = source.centroid - origin;
+  truth.voxel_m = set.evaluation_voxel_m;
+  return truth;
+}
+
+PairTrial trial_of(const BenchSet& set, std::size_t source, std::size_t target) {
+  PairTrial trial;
+  trial.set = set.name, trial.source = set.scans[source].name, trial.target = set.scans[target].name;
+  const auto key = std::minmax(source, target);
+  trial.overlap = set.overlap.at({key.first, key.second});
+  return trial;
+}
+
+void compare(const PairTruth& truth, PairTrial& trial) {
+  if (!trial.result.target_from_source) return;
+  trial.rotation_deg = truth.rotation_deg(*trial.result.target_from_source);
+  trial.translation_m = truth.translation_m(*trial.result.target_from_source);
+  trial.right = truth.is_right(*trial.result.target_from_source);
+}
+
 PairTrial run_trial(const BenchSet& set, std::size_t source_index, std::size_t target_index,
                     const PairOptions& options) {
   const BenchScan &source = set.scans[source_index], &target = set.scans[target_index];
-  PairTrial trial;
-  trial.set = set.name, trial.source = source.name, trial.target = target.name;
-  const auto key = std::minmax(source_index, target_index);
-  trial.overlap = set.overlap.at({key.first, key.second});
+  PairTrial trial = trial_of(set, source_index, target_index);
   PairTrace trace;
+  const double start = thread_cpu_seconds();
   trial.result = register_pair(source.product, target.product, options, {}, &trace);
-  const Eigen::Vector3d origin = source.product.sampled.local_origin_in_scan;
-  const Transform truth = pipelines::between_scan_frames(target.common_from_scan.inverse() * source.common_from_scan,
-                                                         -origin, -target.product.sampled.local_origin_in_scan);
-  const Eigen::Vector3d centroid = source.centroid - origin;
+  trial.cpu_s = thread_cpu_seconds() - start;
+  const PairTruth known = truth_of(set, source_index, target_index);
+  const Transform& truth = known.target_from_source;
   const double voxel = source.product.sampled.voxel_m;
-  if (trial.result.target_from_source) {
-    const Transform d = truth.inverse() * *trial.result.target_from_source;
-    trial.rotation_deg = rotation_angle_rad(d.linear()) * 180 / std::numbers::pi;
-    trial.translation_m = (d * centroid - centroid).norm();
-    trial.right = is_right(*trial.result.target_from_source, truth, centroid, set.evaluation_voxel_m);
-  }
+  compare(known, trial);
   const ScanModel from(source.product.sampled, source.product.features, source.product.regions, ModelLevel::coarse);
   const ScanModel to(target.product.sampled, target.product.features, target.product.regions, ModelLevel::coarse);
   const Eigen::Vector3d middle = middle_of_overlap(from, to, truth);
@@ -101,7 +117,7 @@ PairTrial run_trial(const BenchSet& set, std::size_t source_index, std::size_t t
     return (d * middle - middle).norm() < kNearVoxels * voxel &&
            rotation_angle_rad(d.linear()) * 180 / std::numbers::pi < kNearDeg;
   };
-  const auto right = [&](const Transform& t) { return is_right(t, truth, centroid, set.evaluation_voxel_m); };
+  const auto right = [&](const Transform& t) { return known.is_right(t); };
   trial.rank = {first_rank(trace.seeds, is_near), first_rank(trace.grown, is_near), first_rank(trace.polished, right),
                 first_rank(trace.congruent, right), first_rank(trace.fine, right)};
   if (trial.result.target_from_source) {
@@ -125,7 +141,7 @@ PairTrial run_trial(const BenchSet& set, std::size_t source_index, std::size_t t
 std::string csv_of(const std::vector<PairTrial>& trials) {
   std::string text = "set,source,target,overlap,right,rotation_deg,translation_m";
   for (const char* stage : kTracedStages) text += fmt::format(",rank_{}", stage);
-  text += ",truth_score,best_score,truth_support,best_support,verdict,probability,estimated_overlap,rms_m";
+  text += ",truth_score,best_score,truth_support,best_support,verdict,probability,estimated_overlap,rms_m,cpu_s";
   // Failed pairs carry no evidence, settled ones not every stage: the columns are those of all trials, as they come.
   std::vector<std::string> evidence, stages;
   const auto collect = [](const auto& list, std::vector<std::string>& names) {
@@ -141,8 +157,8 @@ std::string csv_of(const std::vector<PairTrial>& trials) {
                         t.rotation_deg, t.translation_m);
     for (const int rank : t.rank) text += fmt::format(",{}", rank);
     text += fmt::format(",{:.4f},{:.4f},{:.4f},{:.4f}", t.truth_score, t.best_score, t.truth_support, t.best_support);
-    text += fmt::format(",{},{:.5f},{:.4f},{:.5g}", to_string(t.result.verdict), t.result.probability, t.result.overlap,
-                        t.result.rms_m);
+    text += fmt::format(",{},{:.5f},{:.4f},{:.5g},{:.4f}", to_string(t.result.verdict), t.result.probability,
+                        t.result.overlap, t.result.rms_m, t.cpu_s);
     const auto sum_in = [](const auto& list, const std::string& name) {  // a stage may run twice
       double sum = 0;
       bool found = false;
@@ -160,7 +176,7 @@ std::string csv_of(const std::vector<PairTrial>& trials) {
 std::string table_of(const std::vector<PairTrial>& trials) {
   std::string text = "| overlap | pairs | right | accepted | accepted wrongly |";
   for (const char* stage : kTracedStages) text += fmt::format(" {} 1/10/100 |", stage);
-  text += " s median | s 95 % | s most |\n|---|---|---|---|---|";
+  text += " cpu s median | cpu s 95 % | cpu s most |\n|---|---|---|---|---|";
   for (std::size_t k = 0; k < kTracedStages.size() + 3; ++k) text += "---|";
   text += "\n";
   for (const Band& band : kBands) {
@@ -173,7 +189,7 @@ std::string table_of(const std::vector<PairTrial>& trials) {
     for (const PairTrial* t : in) {
       const bool yes = t->result.verdict == Verdict::accepted;
       right += t->right, accepted += yes, wrong += yes && !t->right;
-      seconds.push_back(seconds_of(*t));
+      seconds.push_back(t->cpu_s);
     }
     text += fmt::format("| {} | {} | {} ({:.0f} %) | {} | {} |", band.name, in.size(), right,
                         100.0 * right / static_cast<double>(in.size()), accepted, wrong);

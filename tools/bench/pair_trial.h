@@ -26,10 +26,27 @@ struct PairTrial {
   /// lower, better proposals would not have helped.
   double truth_score = 0, best_score = 0;
   double truth_support = 0, best_support = 0;
+  double cpu_s = 0;  ///< processor time of the pair stage, features not included
   PairResult result;
 };
 
 inline constexpr double kNearVoxels = 5;  ///< sampling voxels that growth is expected to bridge
+
+/// What the ground truth says about a pair, between the local frames of its products.
+struct PairTruth {
+  Transform target_from_source = Transform::Identity();
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< of the source: where translations are compared
+  double voxel_m = 0;                                  ///< of the evaluation
+  [[nodiscard]] double rotation_deg(const Transform& t) const;
+  [[nodiscard]] double translation_m(const Transform& t) const;
+  [[nodiscard]] bool is_right(const Transform& t) const;  ///< within 2 degrees and 2 evaluation voxels
+};
+PairTruth truth_of(const BenchSet& set, std::size_t source, std::size_t target);
+
+/// Names and overlap of a pair that was not registered yet.
+PairTrial trial_of(const BenchSet& set, std::size_t source, std::size_t target);
+/// Fills the errors of the best hypothesis, if there is one.
+void compare(const PairTruth& truth, PairTrial& trial);
 
 PairTrial run_trial(const BenchSet& set, std::size_t source, std::size_t target, const PairOptions& options);
 

@@ -24,10 +24,12 @@ StoredPair register_planned_pair(const ScanPlan& source, const ScanPlan& target,
   if (!source_product) return {failed(source_product.error()), false};
   const auto target_product = cache.get(target.id);
   if (!target_product) return {failed(target_product.error()), false};
+  store::Store::Work work = store.work(key, source.ref.name + " with " + target.ref.name);
   PairResult result = register_pair(**source_product, **target_product, settings.pair, priors);
   // Refinement in float leaves rotations good to 1e-7; at map coordinates (5e6 m) that would be half a metre.
   if (result.target_from_source) result.target_from_source = orthonormalised(*result.target_from_source);
   store.keep(key, result);
+  work.made();
   return {std::move(result), false};
 }
 

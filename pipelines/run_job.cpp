@@ -132,6 +132,21 @@ void complete_warnings(report::SurveyRecord& record, const std::vector<std::stri
   record.warnings.insert(record.warnings.end(), late.begin(), late.end());
 }
 
+/// A run without a journal is as good as one with it.
+std::shared_ptr<store::Journal> open_journal(const Job& job, const std::string& command, const Events& events) {
+  Result<std::shared_ptr<store::Journal>> journal = store::Journal::open(job.output / "journal");
+  if (!journal) {
+    events.warn(journal.error().text());
+    return nullptr;
+  }
+  (*journal)->write({0, "run", "", "", command, 0});
+  return std::move(*journal);
+}
+
+void note(const std::shared_ptr<store::Journal>& journal, const std::string& event, const std::string& text) {
+  if (journal) journal->write({0, event, "", "", text, 0});
+}
+
 }  // namespace
 
 Result<JobResult> run_job(const Job& job, const std::string& command, const Events& events,
@@ -150,9 +165,15 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
   if (!space) return tl::unexpected(space.error());
 
   StoreTroubles troubles(events);
-  const Result<store::Store> store =
+  Result<store::Store> store =
       store::Store::open(store_folder(job), [&](const Error& trouble) { troubles.add(trouble); });
   if (!store) return tl::unexpected(store.error());
+  const std::shared_ptr<store::Journal> journal = open_journal(job, command, events);
+  store->set_journal(journal);
+  store->add_user(job.output);
+  if (const Result<void> written = write_file_atomically(job.output / "job.yaml", resolved_job(job, job.output));
+      !written)
+    return tl::unexpected(written.error());
   take_readable_twins(*listing, job.settings, *store, stop);
   for (const std::string& warning : listing->warnings) events.warn(warning);
 
@@ -160,7 +181,10 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
   SurveyOutcome outcome = run_survey(listing->scans, job.settings, *store, events, stop);
   result.num_made = outcome.num_made;
   result.num_found = outcome.num_found;
-  if (outcome.stopped) return result;
+  if (outcome.stopped) {
+    note(journal, "stopped", fmt::format("made {}, found {}", outcome.num_made, outcome.num_found));
+    return result;
+  }
   run.more = {{"products_made", std::to_string(outcome.num_made)},
               {"products_found", std::to_string(outcome.num_found)},
               {"peak_bytes_in_flight", std::to_string(outcome.peak_bytes_in_flight)}};
@@ -178,7 +202,11 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
   run.warnings = troubles.sorted();
   result.record.run = run;
   output->give_back();
-  if (const Result<void> written = write_results(job, result.record); !written) return tl::unexpected(written.error());
+  if (const Result<void> written = write_results(job, result.record); !written) {
+    note(journal, "ended", written.error().text());
+    return tl::unexpected(written.error());
+  }
+  note(journal, "ended", std::to_string(run.exit_code));
   return result;
 }
 

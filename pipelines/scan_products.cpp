@@ -30,16 +30,22 @@ class Stopwatch {
 
 /// Loads `key` or makes it, and notes the time either way.
 template <class T, class Make>
-Result<T> load_or_make(const store::Store& store, const store::Key& key, std::vector<StageTime>& times,
-                       const Make& make) {
+Result<T> load_or_make(const store::Store& store, const store::Key& key, const std::string& name,
+                       std::vector<StageTime>& times, const Make& make) {
   const Stopwatch watch;
   if (std::optional<T> found = store.load<T>(key)) {
     times.push_back({key.stage, watch.seconds(), true});
     return std::move(*found);
   }
+  store::Store::Work work = store.work(key, name);
   Result<T> made = make();
   times.push_back({key.stage, watch.seconds(), false});
-  if (made) store.keep(key, *made);
+  if (made) {
+    store.keep(key, *made);
+    work.made();
+  } else {
+    work.failed(made.error());
+  }
   return made;
 }
 
@@ -150,19 +156,19 @@ ScanSummary summarise(const ScanProduct& product) {
 }
 
 Result<SampledScan> ProductMaker::sampled(const ScanPlan& plan, std::vector<StageTime>& times) const {
-  return load_or_make<SampledScan>(store_, plan.sampled, times,
+  return load_or_make<SampledScan>(store_, plan.sampled, plan.ref.name, times,
                                    [&] { return read_and_reduce(plan, settings_.sampling); });
 }
 
 Result<FeatureCloud> ProductMaker::features(const ScanPlan& plan, const SampledScan& sampled,
                                             std::vector<StageTime>& times) const {
-  return load_or_make<FeatureCloud>(store_, plan.features, times,
+  return load_or_make<FeatureCloud>(store_, plan.features, plan.ref.name, times,
                                     [&]() -> Result<FeatureCloud> { return describe(sampled, settings_.features); });
 }
 
 Result<RegionMap> ProductMaker::regions(const ScanPlan& plan, const SampledScan& sampled, const FeatureCloud& features,
                                         std::vector<StageTime>& times) const {
-  return load_or_make<RegionMap>(store_, plan.regions, times,
+  return load_or_make<RegionMap>(store_, plan.regions, plan.ref.name, times,
                                  [&]() -> Result<RegionMap> { return divide(sampled, features, settings_.regions); });
 }
 

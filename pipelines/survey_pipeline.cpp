@@ -114,6 +114,7 @@ class SurveyGraph {
     if (stop_) return;
     work.outcome->summary = store_.load<ScanSummary>(work.plan.summary);
     if (work.outcome->summary) {
+      for (const store::Key* key : {&work.plan.sampled, &work.plan.features, &work.plan.regions}) store_.need(*key);
       work.outcome->times.push_back({work.plan.summary.stage, 0, true});
       return;
     }
@@ -210,7 +211,7 @@ class SurveyGraph {
     const auto error = contained([&] {
       StoredPair stored = register_planned_pair(*plan_of_.at(pair.source), *plan_of_.at(pair.target), settings_,
                                                 digests_.pair, work.priors, store_, cache_);
-      pair.from_store = stored.from_store;
+      ++(stored.from_store ? pair.num_found : pair.num_made);
       keep(pair, std::move(stored.result), !work.priors.empty());
     });
     if (error && work.priors.empty()) pair.result.reason = error->text();
@@ -344,7 +345,10 @@ void count_products(SurveyOutcome& out, std::size_t made_again) {
   for (const ScanOutcome& scan : out.scans) {
     for (const StageTime& time : scan.times) ++(time.from_store ? out.num_found : out.num_made);
   }
-  for (const PairOutcome& pair : out.pairs) ++(pair.from_store ? out.num_found : out.num_made);
+  for (const PairOutcome& pair : out.pairs) {
+    out.num_found += pair.num_found;
+    out.num_made += pair.num_made;
+  }
 }
 
 }  // namespace

@@ -31,12 +31,13 @@ struct ScanOutcome {
 struct PairOutcome {
   int source = 0;
   int target = 0;
-  double score = 0;     ///< likeness from the choice of candidates
-  std::string why;      ///< why it was tried
-  bool guided = false;  ///< the result is of the second round, with the predicted pose as an extra hypothesis
-  bool from_store = false;
-  double seconds = 0;  ///< of this run
-  PairResult result;   ///< between local frames, before solving
+  double score = 0;           ///< likeness from the choice of candidates
+  std::string why;            ///< why it was tried
+  bool guided = false;        ///< the result is of the second round, with the predicted pose as an extra hypothesis
+  std::size_t num_found = 0;  ///< results found in the store: a pair that is tried again with a prediction has two
+  std::size_t num_made = 0;   ///< results computed in this run
+  double seconds = 0;         ///< of this run
+  PairResult result;          ///< between local frames, before solving
 };
 
 struct SurveyOutcome {

@@ -8,7 +8,7 @@ tools/setup.sh
 find src pipelines tools tests -name '*.h' -o -name '*.cpp' | xargs clang-format --dry-run --Werror
 cmake --preset ci
 cmake --build --preset ci
-ctest --preset ci --no-tests=error --parallel "$(nproc)"
+ISTHMUS_KILLS=30 ctest --preset ci --no-tests=error --parallel "$(nproc)"
 cmake --preset asan
 cmake --build --preset asan
 UBSAN_OPTIONS=halt_on_error=1 ctest --test-dir build/asan --no-tests=error --output-on-failure --parallel "$(nproc)" \

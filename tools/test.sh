@@ -8,4 +8,4 @@ cd "$(dirname "$0")/.."
 tools/setup.sh
 cmake --preset ci
 cmake --build --preset ci
-ctest --preset ci --no-tests=error --parallel "$(nproc)" --label-exclude 'slow|bench' "$@"
+ISTHMUS_KILLS=5 ctest --preset ci --no-tests=error --parallel "$(nproc)" --label-exclude 'slow|bench' "$@"

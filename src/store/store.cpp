@@ -67,11 +67,32 @@ Result<Store> Store::open(const std::filesystem::path& folder, OnTrouble on_trou
   if (error) {
     return tl::unexpected(write_error("the store's folder cannot be created", error.value(), folder));
   }
-  return Store(folder, std::move(on_trouble));
+  Result<StoreLock> lock = StoreLock::take(folder, StoreLock::Kind::shared);
+  if (!lock) return tl::unexpected(lock.error());
+  return Store(folder, std::move(on_trouble), std::make_shared<StoreLock>(std::move(*lock)));
 }
 
 std::filesystem::path Store::path_of(const Key& key) const {
   return folder_ / key.stage / key.digest.substr(0, 2) / (key.digest + ".artifact");
+}
+
+bool Store::contains(const Key& key) const {
+  std::error_code error;
+  return !folder_.empty() && std::filesystem::exists(path_of(key), error);
+}
+
+void Store::need(const Key& key) const {
+  if (journal_) journal_->write_once({0, "needed", key.stage, key.digest, "", 0});
+}
+
+void Store::add_user(const std::filesystem::path& output) const {
+  if (folder_.empty()) return;
+  const std::string path = std::filesystem::absolute(output).lexically_normal().string();
+  const std::filesystem::path file = folder_ / "users" / (Digest().add(path).hex() + ".txt");
+  std::error_code error;
+  if (std::filesystem::exists(file, error)) return;
+  std::filesystem::create_directories(file.parent_path(), error);
+  if (const Result<void> written = write_file_atomically(file, path + "\n"); !written) report_unkept(written.error());
 }
 
 std::optional<std::string> Store::load_payload(const Key& key) const {
@@ -85,7 +106,10 @@ std::optional<std::string> Store::load_payload(const Key& key) const {
     return std::nullopt;
   }
   Result<std::string> payload = unwrap(*file, text_of(key));
-  if (payload) return std::move(*payload);
+  if (payload) {
+    if (journal_) journal_->write_once({0, "found", key.stage, key.digest, "", 0});
+    return std::move(*payload);
+  }
   report_damage(key, payload.error().what);
   return std::nullopt;
 }
@@ -101,7 +125,24 @@ Result<void> Store::save_payload(const Key& key, const std::string& payload) con
   envelope.payload = payload;
   std::string bytes = to_bytes(envelope);
   bytes += checksum(bytes);
+  if (journal_)
+    journal_->write({0, "kept", key.stage, key.digest, "", 0});  // before it is there: a kill may come between
   return write_file_atomically(path, bytes);
+}
+
+Store::Work::Work(std::shared_ptr<Journal> journal, const Key& key, std::string item)
+    : journal_(std::move(journal)), key_(key), item_(std::move(item)), start_(std::chrono::steady_clock::now()) {
+  if (journal_) journal_->write({0, "began", key_.stage, key_.digest, item_, 0});
+}
+
+void Store::Work::made() { end("made", item_); }
+
+void Store::Work::failed(const Error& error) { end("failed", error.text()); }
+
+void Store::Work::end(const std::string& event, const std::string& item) {
+  if (!journal_) return;
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  journal_->write({0, event, key_.stage, key_.digest, item, seconds});
 }
 
 void Store::report_damage(const Key& key, const std::string& reason) const {

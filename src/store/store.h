@@ -10,6 +10,7 @@
 // bytes, and the later one wins.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -22,6 +23,8 @@
 
 #include "base/error.h"
 #include "store/archive.h"
+#include "store/journal.h"
+#include "store/store_lock.h"
 
 namespace isthmus::store {
 
@@ -40,11 +43,11 @@ class Store {
   /// kept. Called from any thread.
   using OnTrouble = std::function<void(const Error&)>;
 
-  /// Creates the folder if need be; fails when it cannot be written.
+  /// Creates the folder if need be; fails when it cannot be written or is being cleaned (collect.h).
   static Result<Store> open(const std::filesystem::path& folder, OnTrouble on_trouble);
 
   /// A store that keeps nothing and finds nothing.
-  static Store none() { return {{}, {}}; }
+  static Store none() { return {{}, {}, nullptr}; }
 
   /// The artifact, or nothing when there is none or it is damaged (which is reported through OnTrouble).
   template <class T>
@@ -70,12 +73,41 @@ class Store {
     if (const Result<void> saved = save(key, value); !saved) report_unkept(saved.error());
   }
 
+  /// Whether there is an artifact, damaged or not.
+  [[nodiscard]] bool contains(const Key& key) const;
+
+  /// Notes in the journal that an artifact is needed though it is not loaded now.
+  void need(const Key& key) const;
+
+  /// Remembers that the runs of an output use the store: what they need is not collected.
+  void add_user(const std::filesystem::path& output) const;
+
+  /// From now on work() is noted there.
+  void set_journal(std::shared_ptr<Journal> journal) { journal_ = std::move(journal); }
+
+  /// Notes that a product was begun and, with made() or failed(), how it ended. `item` is what a person calls it.
+  class Work {
+   public:
+    Work(std::shared_ptr<Journal> journal, const Key& key, std::string item);
+    /// The product was made and, unless the disk is full, kept.
+    void made();
+    void failed(const Error& error);
+
+   private:
+    void end(const std::string& event, const std::string& item);
+    std::shared_ptr<Journal> journal_;
+    Key key_;
+    std::string item_;
+    std::chrono::steady_clock::time_point start_;
+  };
+  [[nodiscard]] Work work(const Key& key, std::string item) const { return {journal_, key, std::move(item)}; }
+
   [[nodiscard]] std::filesystem::path path_of(const Key& key) const;
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
  private:
-  Store(std::filesystem::path folder, OnTrouble on_trouble)
-      : folder_(std::move(folder)), on_trouble_(std::move(on_trouble)) {}
+  Store(std::filesystem::path folder, OnTrouble on_trouble, std::shared_ptr<const StoreLock> lock)
+      : folder_(std::move(folder)), on_trouble_(std::move(on_trouble)), lock_(std::move(lock)) {}
   [[nodiscard]] std::optional<std::string> load_payload(const Key& key) const;
   [[nodiscard]] Result<void> save_payload(const Key& key, const std::string& payload) const;
   void report_damage(const Key& key, const std::string& reason) const;
@@ -83,6 +115,8 @@ class Store {
 
   std::filesystem::path folder_;
   OnTrouble on_trouble_;
+  std::shared_ptr<const StoreLock> lock_;  // shared with every other process that computes
+  std::shared_ptr<Journal> journal_;
   std::shared_ptr<std::once_flag> unkept_reported_ = std::make_shared<std::once_flag>();
 };
 

@@ -1,5 +1,6 @@
 // A run goes on where it stopped, whatever stopped it.
 #include "end_to_end/survey_on_disk.h"
+#include "store/journal.h"
 
 namespace isthmus::testing {
 namespace {
@@ -71,21 +72,32 @@ TEST_F(Resume, one_more_scan_and_other_settings_of_a_late_stage_reuse_what_still
   EXPECT_EQ(made(out_), "0");
 }
 
-TEST_F(Resume, a_stopped_run_goes_on) {
+TEST_F(Resume, a_run_stopped_by_ctrl_c_or_sigterm_finishes_what_is_in_flight_writes_the_journal_and_goes_on) {
   make_survey(3);
   ASSERT_EQ(run({"register", scans_.string(), "-o", (folder_ / "whole").string()}).exit_code, 0);
-  const fs::path out = folder_ / "stopped";
-  StartedProgram program(ISTHMUS_PROGRAM, {"register", scans_.string(), "-o", out.string(), "--threads", "1"},
-                         folder_.path());
-  ASSERT_TRUE(program.wait_for("registering pairs", 120));
-  program.signal(SIGINT);
-  const Said said = program.finish();
-  EXPECT_EQ(said.exit_code, 130) << said.err;
-  EXPECT_NE(said.out.find("the same command goes on from there"), std::string::npos) << said.out;
-  EXPECT_FALSE(fs::exists(out / "scans.csv"));
-  ASSERT_EQ(run({"register", scans_.string(), "-o", out.string()}).exit_code, 0);
-  EXPECT_NE(run_json(out)["run"]["products_found"], "0");
-  expect_same_bytes(folder_ / "whole", out);
+  for (const auto& [signal, while_it_says] : {std::pair(SIGINT, "registering pairs"), {SIGTERM, "describing scans"}}) {
+    const fs::path out = folder_ / ("stopped" + std::to_string(signal));
+    StartedProgram program(ISTHMUS_PROGRAM, {"register", scans_.string(), "-o", out.string(), "--threads", "1"},
+                           folder_.path());
+    ASSERT_TRUE(program.wait_for(while_it_says, 120));
+    program.signal(signal);
+    const Said said = program.finish();
+    EXPECT_EQ(said.exit_code, 128 + signal) << said.err;
+    EXPECT_NE(said.out.find("the same command goes on from there"), std::string::npos) << said.out;
+    EXPECT_FALSE(fs::exists(out / "scans.csv"));
+
+    const std::vector<store::ProcessJournal> journals = store::read_journals(out / "journal");
+    ASSERT_EQ(journals.size(), 1U);
+    EXPECT_GT(journals[0].count("began"), 0U);
+    EXPECT_EQ(journals[0].count("began"), journals[0].count("made")) << "work in flight was not finished";
+    EXPECT_EQ(journals[0].lines.front().event, "run");
+    EXPECT_EQ(journals[0].lines.back().event, "stopped");
+
+    ASSERT_EQ(run({"register", scans_.string(), "-o", out.string()}).exit_code, 0);
+    EXPECT_NE(run_json(out)["run"]["products_found"], "0");
+    EXPECT_EQ(store::read_journals(out / "journal").back().lines.back().event, "ended");
+    expect_same_bytes(folder_ / "whole", out);
+  }
 }
 
 TEST_F(Resume, a_killed_run_leaves_nothing_that_misleads_the_next) {

@@ -13,5 +13,6 @@ void add_simulate(CLI::App& app, int& exit_code);
 void add_evaluate(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
 void add_config(CLI::App& app, int& exit_code);
+void add_clean(CLI::App& app, int& exit_code);
 
 }  // namespace isthmus::cli

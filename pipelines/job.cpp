@@ -6,6 +6,7 @@
 #include <array>
 
 #include "base/atomic_file.h"
+#include "base/digest.h"
 #include "config/describe.h"
 #include "config/yaml.h"
 #include "isthmus_version.h"
@@ -139,6 +140,18 @@ std::string resolved_job(const Job& job, const fs::path& folder) {
   Settings settings = job.settings;
   if (!settings.run.store.empty()) settings.run.store = relative_path(settings.run.store, folder);
   return out + config::resolved_yaml(settings.stages(), settings.origins, 2);
+}
+
+std::string plan_word(const Job& job) {
+  Settings settings = job.settings;
+  std::vector<config::Stage> stages = settings.stages();
+  std::erase_if(stages, [](const config::Stage& stage) { return stage.name == run_options_table().stage; });
+  Digest digest;
+  digest.add(config::values_yaml(stages)).add(store_folder(job).lexically_normal().string());
+  for (const fs::path& input : job.inputs) digest.add(fs::absolute(input).lexically_normal().string());
+  digest.add(kVersion).add(static_cast<std::uint64_t>(job.share.count));
+  constexpr std::size_t kDigits = 16;
+  return digest.hex().substr(0, kDigits);
 }
 
 fs::path store_folder(const Job& job) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "pipelines/settings.h"
+#include "pipelines/share.h"
 
 namespace isthmus::pipelines {
 
@@ -21,7 +22,12 @@ struct Job {
   std::vector<std::filesystem::path> inputs;  ///< one folder, or files
   std::filesystem::path output;
   Settings settings;
+  Share share;          ///< of the work; not part of the file
+  double wait_s = 600;  ///< a shard waits for others as long as something new comes from them within this time
 };
+
+/// A word for what all shards of one plan have in common: inputs, output, settings but for `run`, number of shards.
+std::string plan_word(const Job& job);
 
 /// The job or jobs of a file, every one checked; wrong ones are errors with file, line and column.
 Result<std::vector<Job>> read_jobs(const std::filesystem::path& file);

@@ -13,12 +13,17 @@ PairResult failed(const Error& error) {
 
 }  // namespace
 
+store::Key pair_key(const ScanPlan& source, const ScanPlan& target, const std::string& settings_digest,
+                    const std::vector<Transform>& priors) {
+  const std::vector<std::string> inputs = {source.regions.digest, target.regions.digest, settings_digest,
+                                           store::to_bytes(priors)};
+  return store::make_key("pair", kPairVersion, inputs);
+}
+
 StoredPair register_planned_pair(const ScanPlan& source, const ScanPlan& target, const Settings& settings,
                                  const std::string& settings_digest, const std::vector<Transform>& priors,
                                  const store::Store& store, ProductCache& cache) {
-  const std::vector<std::string> inputs = {source.regions.digest, target.regions.digest, settings_digest,
-                                           store::to_bytes(priors)};
-  const store::Key key = store::make_key("pair", kPairVersion, inputs);
+  const store::Key key = pair_key(source, target, settings_digest, priors);
   if (std::optional<PairResult> found = store.load<PairResult>(key)) return {std::move(*found), true};
   const auto source_product = cache.get(source.id);
   if (!source_product) return {failed(source_product.error()), false};

@@ -7,6 +7,10 @@
 
 namespace isthmus::pipelines {
 
+/// Where the result of a pair lies, or will lie.
+store::Key pair_key(const ScanPlan& source, const ScanPlan& target, const std::string& settings_digest,
+                    const std::vector<Transform>& priors);
+
 struct StoredPair {
   PairResult result;
   bool from_store = false;

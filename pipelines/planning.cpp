@@ -29,6 +29,7 @@ struct Look {
   std::string content;
   std::optional<ScanScale> scale;
   std::optional<Error> error;
+  bool unseen = false;
 };
 
 Result<ScanScale> measure_scale(const io::ScanRef& ref, int target_points) {
@@ -48,7 +49,7 @@ Look look_at(const io::ScanRef& ref, const Settings& settings, const store::Stor
     look.error = content.error();
     return look;
   }
-  look.content = *content;
+  look.content = std::move(*content);
   const std::array<std::string, 3> inputs = {*content, std::to_string(ref.index),
                                              std::to_string(settings.sampling.target_points)};
   const store::Key key = store::make_key("scale", kSampledVersion, inputs);
@@ -63,6 +64,20 @@ Look look_at(const io::ScanRef& ref, const Settings& settings, const store::Stor
   }
   look.scale = *scale;
   store.keep(key, StoredScale{scale->voxel_m, scale->spacing_m, scale->extent_m});
+  return look;
+}
+
+/// A scan that another process is to look at, as far as it did.
+Look look_from_afar(const io::ScanRef& ref, const Settings& settings, const store::Store& store, const Share& share) {
+  const Result<std::optional<std::string>> content = store::remembered_digest(ref.path, store);
+  if (content && *content) return look_at(ref, settings, store);
+  Look look;
+  look.unseen = content.has_value();
+  if (!content) look.error = content.error();
+  if (!look.unseen || !share.only_looks()) return look;
+  const Result<ScanScale> scale = measure_scale(ref, settings.sampling.target_points);
+  if (scale) look.scale = *scale;
+  if (!scale) look.error = scale.error();
   return look;
 }
 
@@ -122,19 +137,24 @@ std::size_t bytes_to_make(const io::ScanRef& ref, const ScanScale& scale, double
 }  // namespace
 
 SurveyPlan plan_survey(const std::vector<io::ListedScan>& scans, const Settings& settings, const store::Store& store,
-                       const Events& events, const std::atomic<bool>& stop) {
+                       const Events& events, const std::atomic<bool>& stop, const Share& share) {
   std::vector<Look> looks(scans.size());
   std::atomic<std::size_t> done{0};
   parallel_for_index(scans.size(), 1, [&](std::size_t i) {
     if (scans[i].error) {
       looks[i].error = scans[i].error;
     } else if (!stop) {
-      looks[i] = look_at(scans[i].scan, settings, store);
+      looks[i] = share.has(i) ? look_at(scans[i].scan, settings, store)
+                              : look_from_afar(scans[i].scan, settings, store, share);
     }
     events.advance("look", done.fetch_add(1) + 1, scans.size());
   });
   SurveyPlan plan;
   if (stop) return plan;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    if (looks[i].unseen && !looks[i].error) plan.unseen.push_back(static_cast<int>(i));
+  }
+  if (!plan.unseen.empty() && !share.only_looks()) return plan;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     if (looks[i].error) looks[i].error = by_name(*looks[i].error, scans[i].scan);
   }
@@ -157,6 +177,7 @@ SurveyPlan plan_survey(const std::vector<io::ListedScan>& scans, const Settings&
       plan.failed.push_back({id, *looks[i].error, other_unit[i]});
       continue;
     }
+    if (looks[i].unseen) continue;
     plan.scans.push_back(make_plan(id, scans[i].scan, looks[i].content, plan.voxel_m, digests));
     plan.scans.back().bytes =
         bytes_to_make(scans[i].scan, *looks[i].scale, plan.voxel_m, settings.sampling.target_points);

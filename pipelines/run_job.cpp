@@ -10,6 +10,7 @@
 #include <chrono>
 #include <ctime>
 #include <mutex>
+#include <thread>
 
 #include "base/atomic_file.h"
 #include "io/format_table.h"
@@ -26,6 +27,9 @@ namespace isthmus::pipelines {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::chrono::milliseconds kBetweenLooks{
+    500};  // a look loads every summary: seconds would idle, less would load
 
 std::string utc_now() {
   const std::time_t now = std::time(nullptr);
@@ -115,14 +119,6 @@ std::string text_of(const std::vector<fs::path>& paths) {
   return fmt::format("{}", fmt::join(words, " "));
 }
 
-Result<io::ScanListing> scans_of(const Job& job, const Events& events) {
-  Result<io::ScanListing> listing = io::list_scans(job.inputs, folders_of_output(job));
-  if (!listing) return listing;
-  for (const std::string& note : listing->notes) events.info(note);
-  if (!listing->scans.empty()) return listing;
-  return fail("no scans found", text_of(job.inputs), "files are known by their extensions: " + extensions());
-}
-
 /// Those of the listing before, those of the finished survey behind what the record holds already; the latter are told.
 void complete_warnings(report::SurveyRecord& record, const std::vector<std::string>& of_listing, const Events& events) {
   const std::vector<std::string> late = survey_warnings(record);
@@ -130,6 +126,34 @@ void complete_warnings(report::SurveyRecord& record, const std::vector<std::stri
   for (const std::string& warning : record.solution.warnings) events.warn(warning);
   record.warnings.insert(record.warnings.begin(), of_listing.begin(), of_listing.end());
   record.warnings.insert(record.warnings.end(), late.begin(), late.end());
+}
+
+Result<OutputFolder> open_output(const Job& job) {
+  return job.share.is_whole() ? OutputFolder::open(job.output) : OutputFolder::open_shared(job.output, plan_word(job));
+}
+
+/// A survey as far as this share goes. A shard begins again whenever others may have brought what it lacks.
+SurveyOutcome run_share(const std::vector<io::ListedScan>& scans, const Job& job, const store::Store& store,
+                        const Events& events, const std::atomic<bool>& stop) {
+  SurveyOutcome outcome = run_survey(scans, job.settings, store, events, stop, job.share);
+  const Events quiet;
+  std::size_t num_made = outcome.num_made;
+  auto last_news = std::chrono::steady_clock::now();
+  while (outcome.num_missing > 0 && !stop) {
+    const std::chrono::duration<double> silence = std::chrono::steady_clock::now() - last_news;
+    if (silence.count() >= job.wait_s) break;
+    events.advance("others", scans.size() + outcome.pairs.size() - outcome.num_missing,
+                   scans.size() + outcome.pairs.size());
+    std::this_thread::sleep_for(kBetweenLooks);
+    SurveyOutcome next = run_survey(scans, job.settings, store, quiet, stop, job.share);
+    const bool news =
+        next.num_made > 0 || next.num_missing != outcome.num_missing || next.pairs.size() != outcome.pairs.size();
+    if (news) last_news = std::chrono::steady_clock::now();
+    num_made += next.num_made;
+    outcome = std::move(next);
+  }
+  outcome.num_made = num_made;
+  return outcome;
 }
 
 /// A run without a journal is as good as one with it.
@@ -149,6 +173,12 @@ void note(const std::shared_ptr<store::Journal>& journal, const std::string& eve
 
 }  // namespace
 
+Result<io::ScanListing> scans_of_job(const Job& job) {
+  Result<io::ScanListing> listing = io::list_scans(job.inputs, folders_of_output(job));
+  if (!listing || !listing->scans.empty()) return listing;
+  return fail("no scans found", text_of(job.inputs), "files are known by their extensions: " + extensions());
+}
+
 Result<JobResult> run_job(const Job& job, const std::string& command, const Events& events,
                           const std::atomic<bool>& stop) {
   const auto start = std::chrono::steady_clock::now();
@@ -157,12 +187,15 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
   run.started = utc_now();
   run.host = host_name();
 
-  Result<OutputFolder> output = OutputFolder::open(job.output);  // before anything is read: it may be a long night
+  Result<OutputFolder> output = open_output(job);  // before anything is read: it may be a long night
   if (!output) return tl::unexpected(output.error());
-  Result<io::ScanListing> listing = scans_of(job, events);
+  Result<io::ScanListing> listing = scans_of_job(job);
   if (!listing) return tl::unexpected(listing.error());
-  const Result<void> space = output->reserve(bytes_of_results(listing->scans.size(), job.settings.candidates));
-  if (!space) return tl::unexpected(space.error());
+  for (const std::string& note : listing->notes) events.info(note);
+  if (job.share.is_whole()) {
+    const Result<void> space = output->reserve(bytes_of_results(listing->scans.size(), job.settings.candidates));
+    if (!space) return tl::unexpected(space.error());
+  }
 
   StoreTroubles troubles(events);
   Result<store::Store> store =
@@ -178,11 +211,18 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
   for (const std::string& warning : listing->warnings) events.warn(warning);
 
   JobResult result;
-  SurveyOutcome outcome = run_survey(listing->scans, job.settings, *store, events, stop);
+  SurveyOutcome outcome = run_share(listing->scans, job, *store, events, stop);
   result.num_made = outcome.num_made;
   result.num_found = outcome.num_found;
   if (outcome.stopped) {
     note(journal, "stopped", fmt::format("made {}, found {}", outcome.num_made, outcome.num_found));
+    return result;
+  }
+  if (!job.share.is_whole()) {
+    result.end = outcome.num_missing == 0 ? JobEnd::shared : JobEnd::unfinished;
+    result.num_missing = outcome.num_missing;
+    note(journal, "ended",
+         fmt::format("shard {} of {}, {} missing", job.share.index + 1, job.share.count, outcome.num_missing));
     return result;
   }
   run.more = {{"products_made", std::to_string(outcome.num_made)},

@@ -7,6 +7,7 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <map>
 #include <memory>
@@ -54,19 +55,21 @@ using ScanMessage = std::shared_ptr<ScanWork>;
 struct PairWork {
   PairOutcome* outcome = nullptr;
   std::vector<Transform> priors;
-  std::size_t bytes = 0;
+  std::size_t bytes = 0;  ///< nothing to speak of for a result that is only looked for in the store
+  bool mine = true;
 };
 using PairMessage = std::shared_ptr<PairWork>;
 
 class SurveyGraph {
  public:
   SurveyGraph(const SurveyPlan& plan, const Settings& settings, const store::Store& store, const Events& events,
-              const std::atomic<bool>& stop, SurveyOutcome& out)
+              const std::atomic<bool>& stop, const Share& share, SurveyOutcome& out)
       : plan_(plan),
         settings_(settings),
         store_(store),
         events_(events),
         stop_(stop),
+        share_(share),
         out_(out),
         maker_(settings, store),
         digests_(digests_of(settings)),
@@ -118,6 +121,10 @@ class SurveyGraph {
       work.outcome->times.push_back({work.plan.summary.stage, 0, true});
       return;
     }
+    if (!share_.has(static_cast<std::size_t>(work.outcome->id))) {
+      leave_to_others(work);
+      return;
+    }
     Result<SampledScan> sampled = maker_.sampled(work.plan, work.outcome->times);
     if (!sampled) {
       work.outcome->error = sampled.error();
@@ -125,6 +132,18 @@ class SurveyGraph {
     }
     work.product = std::make_unique<ScanProduct>();
     work.product->sampled = std::move(*sampled);
+  }
+
+  /// What went wrong with a scan is told to the other shares, so that they do not wait for it.
+  [[nodiscard]] static store::Key trouble_key(const ScanPlan& plan) {
+    return store::make_key("trouble", "1", std::array<std::string, 1>{plan.summary.digest});
+  }
+  void leave_to_others(ScanWork& work) {
+    if (const auto text = store_.load<std::string>(trouble_key(work.plan))) {
+      work.outcome->error = Error{*text, "", ""};
+    } else {
+      work.outcome->missing = true;
+    }
   }
 
   void describe(ScanWork& work) {
@@ -157,6 +176,7 @@ class SurveyGraph {
     if (work->outcome->error) {
       work->outcome->error = by_name(*work->outcome->error, work->plan.ref);
       events_.warn(work->outcome->error->text());
+      if (share_.count > 1) store_.keep(trouble_key(work->plan), work->outcome->error->text());
     }
     ++scans_done_;
     events_.advance("scans", scans_done_, plan_.scans.size());
@@ -164,8 +184,12 @@ class SurveyGraph {
     gate_.release(work->plan.bytes);
   }
 
+  [[nodiscard]] bool are_scans_missing() const {
+    return std::ranges::any_of(out_.scans, [](const ScanOutcome& scan) { return scan.missing; });
+  }
+
   void choose_candidates() {
-    if (stop_) return;
+    if (stop_ || (are_scans_missing() && !share_.only_looks())) return;
     if (const auto error = contained([&] { propose(); })) warn(error->text());
     if (out_.pairs.empty()) solve_.try_put({});
     num_pairs_ = out_.pairs.size();
@@ -175,6 +199,7 @@ class SurveyGraph {
   void propose() {
     std::vector<CandidateInput> inputs;
     for (const ScanOutcome& scan : out_.scans) {
+      if (scan.missing) inputs.push_back({scan.id, scan.ref.name, {}, 0, std::nullopt});  // to look ahead
       if (!scan.summary || scan.error) continue;
       const ScanSummary& summary = *scan.summary;
       const std::size_t count = summary.dimension == 0 ? 0 : summary.descriptors.size() / summary.dimension;
@@ -199,8 +224,9 @@ class SurveyGraph {
     auto work = std::make_shared<PairWork>();
     work->outcome = &pair;
     work->priors = std::move(priors);
+    work->mine = share_.has(num_submitted_++);
     const auto bytes_of = [&](int id) { return out_.scans[static_cast<std::size_t>(id)].summary->product_bytes; };
-    work->bytes = kBytesOfPair + kCopiesOfProduct * (bytes_of(pair.source) + bytes_of(pair.target));
+    if (work->mine) work->bytes = kBytesOfPair + kCopiesOfProduct * (bytes_of(pair.source) + bytes_of(pair.target));
     gate_.submit(work->bytes, [this, work] { pair_.try_put(work); });
   }
 
@@ -209,6 +235,10 @@ class SurveyGraph {
     const auto start = std::chrono::steady_clock::now();
     PairOutcome& pair = *work.outcome;
     const auto error = contained([&] {
+      if (!work.mine) {
+        take_from_store(work);
+        return;
+      }
       StoredPair stored = register_planned_pair(*plan_of_.at(pair.source), *plan_of_.at(pair.target), settings_,
                                                 digests_.pair, work.priors, store_, cache_);
       ++(stored.from_store ? pair.num_found : pair.num_made);
@@ -216,6 +246,19 @@ class SurveyGraph {
     });
     if (error && work.priors.empty()) pair.result.reason = error->text();
     pair.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+
+  void take_from_store(PairWork& work) {
+    PairOutcome& pair = *work.outcome;
+    const auto source = plan_of_.find(pair.source), target = plan_of_.find(pair.target);
+    std::optional<PairResult> found;
+    if (source != plan_of_.end() && target != plan_of_.end()) {
+      found = store_.load<PairResult>(pair_key(*source->second, *target->second, digests_.pair, work.priors));
+    }
+    pair.missing = !found;
+    if (!found) return;
+    ++pair.num_found;
+    keep(pair, std::move(*found), !work.priors.empty());
   }
 
   /// A guided result counts only where it says more than the first one did.
@@ -233,8 +276,12 @@ class SurveyGraph {
     gate_.release(work->bytes);
   }
 
+  [[nodiscard]] bool are_pairs_missing() const {
+    return std::ranges::any_of(out_.pairs, [](const PairOutcome& pair) { return pair.missing; });
+  }
+
   void solve_graph() {
-    if (stop_) return;
+    if (stop_ || are_scans_missing() || are_pairs_missing()) return;
     if (const auto error = contained([&] { out_.solution = solve(graph_of_results(), settings_.solve); })) {
       warn(error->text());
     }
@@ -305,15 +352,17 @@ class SurveyGraph {
   const store::Store& store_;
   const Events& events_;
   const std::atomic<bool>& stop_;
+  Share share_;
   SurveyOutcome& out_;
   ProductMaker maker_;
   SettingsDigests digests_;
   ByteGate gate_;
   ProductCache cache_;
   std::map<int, const ScanPlan*> plan_of_;
-  std::size_t scans_done_ = 0;  // written by the serial barrier only
-  std::size_t pairs_done_ = 0;  // likewise
-  std::size_t num_pairs_ = 0;   // written before pairs are submitted
+  std::size_t scans_done_ = 0;     // written by the serial barrier only
+  std::size_t pairs_done_ = 0;     // likewise
+  std::size_t num_submitted_ = 0;  // pairs of all waves: deals them out to shares
+  std::size_t num_pairs_ = 0;      // written before pairs are submitted
   bool guided_round_ = false;
   std::atomic<std::size_t> num_made_again_{0};
 
@@ -354,28 +403,31 @@ void count_products(SurveyOutcome& out, std::size_t made_again) {
 }  // namespace
 
 SurveyOutcome run_survey(const std::vector<io::ListedScan>& scans, const Settings& settings, const store::Store& store,
-                         const Events& events, const std::atomic<bool>& stop) {
+                         const Events& events, const std::atomic<bool>& stop, const Share& share) {
   SurveyOutcome out;
   for (std::size_t i = 0; i < scans.size(); ++i) {
-    out.scans.push_back({static_cast<int>(i), scans[i].scan, std::nullopt, std::nullopt, {}});
+    out.scans.push_back({static_cast<int>(i), scans[i].scan, std::nullopt, std::nullopt, {}, false});
   }
   const auto threads = static_cast<std::size_t>(threads_of(settings.run));
   const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);
   oneapi::tbb::task_arena arena(static_cast<int>(threads));
   arena.execute([&] {
-    const SurveyPlan plan = plan_survey(scans, settings, store, events, stop);
+    const SurveyPlan plan = plan_survey(scans, settings, store, events, stop, share);
     out.voxel_m = plan.voxel_m;
     out.automatic_voxel = plan.automatic_voxel;
     for (const FailedScan& failed : plan.failed) {
       out.scans[static_cast<std::size_t>(failed.id)].error = failed.error;
       events.warn(failed.error.text());
     }
+    for (const int id : plan.unseen) out.scans[static_cast<std::size_t>(id)].missing = true;
     if (plan.scans.empty() || stop) return;
-    SurveyGraph graph(plan, settings, store, events, stop, out);
+    SurveyGraph graph(plan, settings, store, events, stop, share, out);
     graph.run();
     count_products(out, graph.num_made_again());
   });
   out.stopped = stop;
+  out.num_missing = static_cast<std::size_t>(std::ranges::count(out.scans, true, &ScanOutcome::missing) +
+                                             std::ranges::count(out.pairs, true, &PairOutcome::missing));
   std::vector<std::string> of_scans;
   for (const ScanOutcome& scan : out.scans) {
     if (scan.error) of_scans.push_back(scan.error->text());

@@ -15,6 +15,7 @@
 #include "pipelines/events.h"
 #include "pipelines/planning.h"
 #include "pipelines/settings.h"
+#include "pipelines/share.h"
 #include "survey/pose_graph.h"
 
 namespace isthmus::pipelines {
@@ -26,6 +27,7 @@ struct ScanOutcome {
   std::optional<ScanSummary> summary;  ///< absent if it failed
   std::optional<Error> error;
   std::vector<StageTime> times;
+  bool missing = false;  ///< another share's, and not in the store
 };
 
 struct PairOutcome {
@@ -36,6 +38,7 @@ struct PairOutcome {
   bool guided = false;        ///< the result is of the second round, with the predicted pose as an extra hypothesis
   std::size_t num_found = 0;  ///< results found in the store: a pair that is tried again with a prediction has two
   std::size_t num_made = 0;   ///< results computed in this run
+  bool missing = false;       ///< another share's, and not in the store
   double seconds = 0;         ///< of this run
   PairResult result;          ///< between local frames, before solving
 };
@@ -50,12 +53,14 @@ struct SurveyOutcome {
   std::vector<std::string> warnings;  ///< in a fixed order
   std::size_t num_made = 0;           ///< products computed in this run
   std::size_t num_found = 0;          ///< products found in the store
+  std::size_t num_missing = 0;  ///< scans and pairs of other shares that are not in the store: there is no solution
   std::size_t peak_bytes_in_flight = 0;
 };
 
 /// Runs in an arena of its own with settings.run.threads threads. `scans` sorted by name: the index is the id. `stop`
-/// may be set at any time (signals): work in flight is finished and stored, nothing else is begun.
+/// may be set at any time (signals): work in flight is finished and stored, nothing else is begun. With a share of the
+/// work, the run ends at the first stage (look, scans, a wave of pairs) for which others' results are missing.
 SurveyOutcome run_survey(const std::vector<io::ListedScan>& scans, const Settings& settings, const store::Store& store,
-                         const Events& events, const std::atomic<bool>& stop);
+                         const Events& events, const std::atomic<bool>& stop, const Share& share = {});
 
 }  // namespace isthmus::pipelines

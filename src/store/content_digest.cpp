@@ -19,7 +19,9 @@ constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
 constexpr std::int64_t kSettledSeconds = 2;  // coarser than the clock of any file system in use (FAT: 2 s)
 
 struct Remembered {
-  std::array<std::int64_t, 5> identity{};  ///< size, modification seconds, nanoseconds, inode, device
+  /// Size, modification seconds, nanoseconds, inode. Not the device: a shared file system has another number on every
+  /// machine that mounts it.
+  std::array<std::int64_t, 4> identity{};
   std::string digest;
   template <class F>
   void fields(F&& f) {
@@ -27,9 +29,8 @@ struct Remembered {
   }
 };
 
-std::array<std::int64_t, 5> identity_of(const struct stat& info) {
-  return {info.st_size, info.st_mtim.tv_sec, info.st_mtim.tv_nsec, static_cast<std::int64_t>(info.st_ino),
-          static_cast<std::int64_t>(info.st_dev)};
+std::array<std::int64_t, 4> identity_of(const struct stat& info) {
+  return {info.st_size, info.st_mtim.tv_sec, info.st_mtim.tv_nsec, static_cast<std::int64_t>(info.st_ino)};
 }
 
 Result<std::string> digest_of_bytes(int fd, const std::string& path) {
@@ -44,29 +45,54 @@ Result<std::string> digest_of_bytes(int fd, const std::string& path) {
   }
 }
 
+/// An open file, what identifies it, and where its digest would be.
+struct OpenFile {
+  int fd = -1;
+  struct stat info {};
+  Key key;
+};
+
+Result<OpenFile> open_file(const std::filesystem::path& path) {
+  OpenFile file;
+  file.fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file.fd < 0) return fail(std::string("cannot open: ") + std::strerror(errno), path.string());
+  if (::fstat(file.fd, &file.info) != 0) {
+    const std::string why = std::strerror(errno);
+    ::close(file.fd);
+    return fail("cannot look at: " + why, path.string());
+  }
+  const std::array<std::string, 1> inputs = {std::filesystem::absolute(path).lexically_normal().string()};
+  file.key = make_key("content", "2", inputs);
+  return file;
+}
+
+std::optional<std::string> remembered(const OpenFile& file, const Store& store) {
+  const auto known = store.load<Remembered>(file.key);
+  if (known && known->identity == identity_of(file.info)) return known->digest;
+  return std::nullopt;
+}
+
 }  // namespace
 
 Result<std::string> content_digest(const std::filesystem::path& path, const Store& store) {
-  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return fail(std::string("cannot open: ") + std::strerror(errno), path.string());
-  struct stat info {};
-  if (::fstat(fd, &info) != 0) {
-    const std::string why = std::strerror(errno);
-    ::close(fd);
-    return fail("cannot look at: " + why, path.string());
+  const Result<OpenFile> file = open_file(path);
+  if (!file) return tl::unexpected(file.error());
+  if (std::optional<std::string> known = remembered(*file, store)) {
+    ::close(file->fd);
+    return std::move(*known);
   }
-  const std::array<std::int64_t, 5> identity = identity_of(info);
-  const std::array<std::string, 1> inputs = {std::filesystem::absolute(path).lexically_normal().string()};
-  const Key key = make_key("content", "1", inputs);
-  if (const auto known = store.load<Remembered>(key); known && known->identity == identity) {
-    ::close(fd);
-    return known->digest;
-  }
-  Result<std::string> digest = digest_of_bytes(fd, path.string());
-  ::close(fd);
-  const bool settled = info.st_mtim.tv_sec + kSettledSeconds < std::time(nullptr);
-  if (digest && settled) store.keep(key, Remembered{identity, *digest});
+  Result<std::string> digest = digest_of_bytes(file->fd, path.string());
+  ::close(file->fd);
+  const bool settled = file->info.st_mtim.tv_sec + kSettledSeconds < std::time(nullptr);
+  if (digest && settled) store.keep(file->key, Remembered{identity_of(file->info), *digest});
   return digest;
+}
+
+Result<std::optional<std::string>> remembered_digest(const std::filesystem::path& path, const Store& store) {
+  const Result<OpenFile> file = open_file(path);
+  if (!file) return tl::unexpected(file.error());
+  ::close(file->fd);
+  return remembered(*file, store);
 }
 
 }  // namespace isthmus::store

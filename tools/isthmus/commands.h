@@ -14,5 +14,6 @@ void add_evaluate(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
 void add_config(CLI::App& app, int& exit_code);
 void add_clean(CLI::App& app, int& exit_code);
+void add_plan(CLI::App& app, int& exit_code);
 
 }  // namespace isthmus::cli

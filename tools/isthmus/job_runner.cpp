@@ -42,6 +42,15 @@ Ended run_one(const pipelines::Job& job, const std::string& command, Terminal& t
       return {kSuccess, summary_of(*result, job)};
     case pipelines::JobEnd::unconnected:
       return {kUnconnected, summary_of(*result, job)};
+    case pipelines::JobEnd::shared:
+      return {kSuccess, fmt::format("everything is in {}: the same command without --shard collects it",
+                                    pipelines::store_folder(job).string())};
+    case pipelines::JobEnd::unfinished:
+      return {
+          kUnfinished,
+          fmt::format("shard {} of {} did its share; {} {} of other shards missing: run it again when they are done",
+                      job.share.index + 1, job.share.count, result->num_missing,
+                      result->num_missing == 1 ? "product is" : "products are")};
     case pipelines::JobEnd::stopped:
       break;
   }
@@ -50,10 +59,10 @@ Ended run_one(const pipelines::Job& job, const std::string& command, Terminal& t
                       pipelines::store_folder(job).string())};
 }
 
-/// The exit code that tells most: a stop, then a failure, then unconnected scans.
+/// The exit code that tells most: a stop, then a failure, then an unfinished shard, then unconnected scans.
 int worse(int a, int b) {
   const auto rank = [](int code) {
-    return code >= kSignalBase ? 3 : code == kFailure ? 2 : code == kUnconnected ? 1 : 0;
+    return code >= kSignalBase ? 4 : code == kFailure ? 3 : code == kUnfinished ? 2 : code == kUnconnected ? 1 : 0;
   };
   return rank(a) >= rank(b) ? a : b;
 }

@@ -23,8 +23,8 @@ constexpr const char* kAbout =
 
 constexpr const char* kExitCodes =
     "Exit codes: 0 all scans hang together (pair: accepted), 3 finished, but scans are unconnected or\n"
-    "unreadable (pair: not accepted), 2 wrong usage or configuration, 1 failure, 130 or 143 stopped by Ctrl-C or\n"
-    "a signal (the same command goes on from there). Messages go to standard error.";
+    "unreadable (pair: not accepted), 4 a shard waits for others, 2 wrong usage or configuration, 1 failure, 130 or\n"
+    "143 stopped by Ctrl-C or a signal (the same command goes on from there). Messages go to standard error.";
 
 /// glibc raises its threshold for blocks of their own with every large block that is freed, and from then on keeps what
 /// scans and pairs leave behind: a quarter of the peak on 20 scans of 5 million points was such leavings. A fixed
@@ -55,6 +55,7 @@ int main(int argc, char** argv) {
   isthmus::cli::add_export(app, exit_code);
   isthmus::cli::add_config(app, exit_code);
   isthmus::cli::add_clean(app, exit_code);
+  isthmus::cli::add_plan(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -22,7 +22,7 @@ struct RegisterRun {
     job.origin = "command line";
     job.inputs.assign(inputs.begin(), inputs.end());
     job.output = output;
-    if (const Result<void> good = flags.apply(job.settings); !good) {
+    if (const Result<void> good = flags.apply(job); !good) {
       terminal.error(good.error());
       return kUsage;
     }
@@ -45,6 +45,7 @@ void add_register(CLI::App& app, int& exit_code) {
   run->flags.add_config(*command);
   run->flags.add_overrides(*command);
   run->flags.add_store(*command);
+  run->flags.add_shard(*command);
   command->callback([run, &exit_code] { exit_code = run->run(); });
 }
 

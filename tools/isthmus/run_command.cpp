@@ -19,7 +19,7 @@ int run_file(const std::string& file, const SettingsFlags& flags) {
     return kUsage;
   }
   for (pipelines::Job& job : *jobs) {
-    if (const Result<void> good = flags.apply(job.settings); !good) {
+    if (const Result<void> good = flags.apply(job); !good) {
       terminal.error(good.error());
       return kUsage;
     }
@@ -38,6 +38,7 @@ void add_run(CLI::App& app, int& exit_code) {
       ->required();
   flags->add_overrides(*command);
   flags->add_store(*command);
+  flags->add_shard(*command);
   command->callback([file, flags, &exit_code] { exit_code = run_file(*file, *flags); });
 }
 

@@ -29,6 +29,30 @@ void SettingsFlags::add_store(CLI::App& command) {
       ->type_name("DIR");
 }
 
+void SettingsFlags::add_shard(CLI::App& command) {
+  command
+      .add_option("--shard", shard,
+                  "Do the K-th of N shares of the work, beside other processes or machines that do the others with the "
+                  "same store; the same command without it collects the results")
+      ->type_name("K/N");
+  command
+      .add_option("--wait", wait_s,
+                  "A shard that needs what others have not made yet gives up when nothing came for so long (default: "
+                  "600); it can be run again")
+      ->type_name("SECONDS")
+      ->check(CLI::NonNegativeNumber);
+}
+
+Result<void> SettingsFlags::apply(pipelines::Job& job) const {
+  job.wait_s = wait_s;
+  if (!shard.empty()) {
+    const Result<pipelines::Share> share = pipelines::Share::parse(shard);
+    if (!share) return tl::unexpected(share.error());
+    job.share = *share;
+  }
+  return apply(job.settings);
+}
+
 Result<void> SettingsFlags::apply(pipelines::Settings& settings) const {
   for (const std::string& config : configs) {
     if (const Result<void> done = pipelines::apply_config(settings, config); !done) return done;

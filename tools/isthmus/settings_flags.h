@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pipelines/settings.h"
+#include "pipelines/job.h"
 
 namespace isthmus::cli {
 
@@ -15,13 +15,18 @@ struct SettingsFlags {
   std::string threads;
   std::string memory_gb;
   std::string store;
+  std::string shard;
+  double wait_s = pipelines::Job().wait_s;
 
   void add_config(CLI::App& command);     ///< -c
   void add_overrides(CLI::App& command);  ///< --set, --threads, --memory
   void add_store(CLI::App& command);      ///< --store
+  void add_shard(CLI::App& command);      ///< --shard, --wait
 
   /// Files and profiles first, then --set, then the flags; on top of what `settings` holds.
   [[nodiscard]] Result<void> apply(pipelines::Settings& settings) const;
+  /// apply() on the job's settings, and the shard.
+  [[nodiscard]] Result<void> apply(pipelines::Job& job) const;
 };
 
 }  // namespace isthmus::cli

@@ -14,8 +14,10 @@ constexpr double kTerminalSeconds = 0.1;  // how often a progress line changes: 
 constexpr double kLogSeconds = 10;        // how often a log gets a line
 
 std::string words_of(const std::string& stage) {
-  static const std::map<std::string, std::string> kWords = {
-      {"look", "looking at scans"}, {"scans", "describing scans"}, {"pairs", "registering pairs"}};
+  static const std::map<std::string, std::string> kWords = {{"look", "looking at scans"},
+                                                            {"scans", "describing scans"},
+                                                            {"pairs", "registering pairs"},
+                                                            {"others", "waiting for other shards"}};
   const auto words = kWords.find(stage);
   return words == kWords.end() ? stage : words->second;
 }

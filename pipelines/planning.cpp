@@ -27,6 +27,7 @@ using StoredScale = std::array<double, 3>;
 
 struct Look {
   std::string content;
+  store::FileIdentity identity{};
   std::optional<ScanScale> scale;
   std::optional<Error> error;
   bool unseen = false;
@@ -44,6 +45,7 @@ Result<ScanScale> measure_scale(const io::ScanRef& ref, int target_points) {
 
 Look look_at(const io::ScanRef& ref, const Settings& settings, const store::Store& store) {
   Look look;
+  if (const Result<store::FileIdentity> identity = store::identity_of(ref.path)) look.identity = *identity;
   Result<std::string> content = store::content_digest(ref.path, store);
   if (!content) {
     look.error = content.error();
@@ -179,6 +181,7 @@ SurveyPlan plan_survey(const std::vector<io::ListedScan>& scans, const Settings&
     }
     if (looks[i].unseen) continue;
     plan.scans.push_back(make_plan(id, scans[i].scan, looks[i].content, plan.voxel_m, digests));
+    plan.scans.back().identity = looks[i].identity;
     plan.scans.back().bytes =
         bytes_to_make(scans[i].scan, *looks[i].scale, plan.voxel_m, settings.sampling.target_points);
   }

@@ -59,6 +59,12 @@ Result<SampledScan> read_and_reduce(const ScanPlan& plan, const SamplingOptions&
     if (chunk.points.empty()) break;
     sampler.add(chunk);
   }
+  // What is read now would be kept as what the content of then was reduced to.
+  const Result<store::FileIdentity> identity = store::identity_of(plan.ref.path);
+  if (!identity) return tl::unexpected(identity.error());
+  if (*identity != plan.identity) {
+    return fail("it changed while the run was working", plan.ref.name, "run again when it is complete");
+  }
   Result<SampledScan> sampled = sampler.finish();
   if (!sampled && sampled.error().where.empty()) sampled.error().where = plan.ref.name;
   if (sampled) {

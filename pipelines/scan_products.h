@@ -15,6 +15,7 @@
 #include "io/scan_reader.h"
 #include "pairwise/register_pair.h"
 #include "pipelines/settings.h"
+#include "store/content_digest.h"
 #include "store/store.h"
 
 namespace isthmus::pipelines {
@@ -24,7 +25,8 @@ struct ScanPlan {
   int id = 0;
   io::ScanRef ref;
   double voxel_m = 0;
-  std::size_t bytes = 0;  ///< estimate of the memory that making its products needs
+  store::FileIdentity identity{};  ///< of the file when its content was looked at
+  std::size_t bytes = 0;           ///< estimate of the memory that making its products needs
   store::Key sampled, features, regions, summary;
 };
 

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <map>
 #include <memory>
+#include <new>
 
 #include "pipelines/byte_gate.h"
 #include "pipelines/guided_pairs.h"
@@ -33,6 +34,8 @@ std::optional<Error> contained(const Body& body) {
   oneapi::tbb::this_task_arena::isolate([&] {
     try {
       body();
+    } catch (const std::bad_alloc&) {
+      error = Error{"not enough memory", "", "give the program more, or fewer --threads, less --memory"};
     } catch (const std::exception& exception) {
       error = Error{fmt::format("internal failure: {}", exception.what()), "", "please report it with the scan"};
     } catch (...) {

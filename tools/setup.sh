@@ -11,6 +11,8 @@ packages=(
   libgtest-dev libbenchmark-dev
   # plots and the checks of results
   python3 python3-numpy python3-scipy python3-matplotlib
+  # a Slurm of two nodes on this machine, for the test of isthmus submit
+  slurm-wlm munge
 )
 
 missing=()

@@ -19,9 +19,7 @@ constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
 constexpr std::int64_t kSettledSeconds = 2;  // coarser than the clock of any file system in use (FAT: 2 s)
 
 struct Remembered {
-  /// Size, modification seconds, nanoseconds, inode. Not the device: a shared file system has another number on every
-  /// machine that mounts it.
-  std::array<std::int64_t, 4> identity{};
+  FileIdentity identity{};
   std::string digest;
   template <class F>
   void fields(F&& f) {
@@ -29,7 +27,7 @@ struct Remembered {
   }
 };
 
-std::array<std::int64_t, 4> identity_of(const struct stat& info) {
+FileIdentity identity_of(const struct stat& info) {
   return {info.st_size, info.st_mtim.tv_sec, info.st_mtim.tv_nsec, static_cast<std::int64_t>(info.st_ino)};
 }
 
@@ -74,6 +72,12 @@ std::optional<std::string> remembered(const OpenFile& file, const Store& store) 
 
 }  // namespace
 
+Result<FileIdentity> identity_of(const std::filesystem::path& path) {
+  struct stat info {};
+  if (::stat(path.c_str(), &info) == 0) return identity_of(info);
+  return fail(std::string("cannot look at: ") + std::strerror(errno), path.string());
+}
+
 Result<std::string> content_digest(const std::filesystem::path& path, const Store& store) {
   const Result<OpenFile> file = open_file(path);
   if (!file) return tl::unexpected(file.error());
@@ -82,7 +86,10 @@ Result<std::string> content_digest(const std::filesystem::path& path, const Stor
     return std::move(*known);
   }
   Result<std::string> digest = digest_of_bytes(file->fd, path.string());
+  struct stat after {};
+  const bool changed = ::fstat(file->fd, &after) != 0 || identity_of(after) != identity_of(file->info);
   ::close(file->fd);
+  if (digest && changed) return fail("it changed while it was read", path.string(), "run again when it is complete");
   const bool settled = file->info.st_mtim.tv_sec + kSettledSeconds < std::time(nullptr);
   if (digest && settled) store.keep(file->key, Remembered{identity_of(file->info), *digest});
   return digest;

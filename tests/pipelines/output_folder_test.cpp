@@ -68,5 +68,26 @@ TEST(OutputFolder, reserves_space_and_gives_it_back) {
   EXPECT_LT(fs::file_size(folder / ".lock"), 1000U);
 }
 
+TEST(OutputFolder, is_held_together_by_the_shards_of_one_plan) {
+  const testing::TemporaryFolder folder;
+  {
+    const auto first = OutputFolder::open_shared(folder / "out", "plan-a");
+    ASSERT_TRUE(first) << first.error().text();
+    {
+      const auto second = OutputFolder::open_shared(folder / "out", "plan-a");
+      ASSERT_TRUE(second) << second.error().text();
+    }
+    EXPECT_TRUE(fs::exists(folder / "out" / ".lock")) << "the first one still works";
+    const auto whole = OutputFolder::open(folder / "out");
+    ASSERT_FALSE(whole);
+    EXPECT_EQ(whole.error().what, "another run writes to this folder: shards of plan plan-a");
+    EXPECT_FALSE(OutputFolder::open_shared(folder / "out", "plan-b"));
+  }
+  EXPECT_FALSE(fs::exists(folder / "out"));
+  const auto whole = OutputFolder::open(folder / "out");
+  ASSERT_TRUE(whole);
+  EXPECT_FALSE(OutputFolder::open_shared(folder / "out", "plan-a"));
+}
+
 }  // namespace
 }  // namespace isthmus::pipelines

@@ -15,5 +15,7 @@ void add_export(CLI::App& app, int& exit_code);
 void add_config(CLI::App& app, int& exit_code);
 void add_clean(CLI::App& app, int& exit_code);
 void add_plan(CLI::App& app, int& exit_code);
+void add_submit(CLI::App& app, int& exit_code);
+void add_status(CLI::App& app, int& exit_code);
 
 }  // namespace isthmus::cli

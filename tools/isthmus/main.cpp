@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <new>
 
 #include "commands.h"
 #include "exit_codes.h"
@@ -56,11 +57,16 @@ int main(int argc, char** argv) {
   isthmus::cli::add_config(app, exit_code);
   isthmus::cli::add_clean(app, exit_code);
   isthmus::cli::add_plan(app, exit_code);
+  isthmus::cli::add_submit(app, exit_code);
+  isthmus::cli::add_status(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     const bool asked_for_help = app.exit(error) == 0;
     return asked_for_help ? isthmus::cli::kSuccess : isthmus::cli::kUsage;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "error: not enough memory (give the program more, or fewer --threads, less --memory)\n");
+    return isthmus::cli::kFailure;
   } catch (const std::exception& error) {
     fmt::print(stderr, "isthmus: internal failure: {}\n", error.what());
     return isthmus::cli::kFailure;

@@ -51,7 +51,7 @@ Look look_at(const io::ScanRef& ref, const Settings& settings, const store::Stor
     look.error = content.error();
     return look;
   }
-  look.content = std::move(*content);
+  look.content = *content;
   const std::array<std::string, 3> inputs = {*content, std::to_string(ref.index),
                                              std::to_string(settings.sampling.target_points)};
   const store::Key key = store::make_key("scale", kSampledVersion, inputs);

@@ -57,7 +57,9 @@ void judge(const PairEvidence& e, const PairOptions& options, PairResult& result
                      {"rms_voxels", e.rms_voxels},
                      {"observability", e.observability},
                      {"num_supported", e.num_supported},
-                     {"free_space", e.free_space ? 1.0 : 0.0}};
+                     {"free_space", e.free_space ? 1.0 : 0.0},
+                     {"share_under_6mm", e.share_under_6mm},
+                     {"share_under_20mm", e.share_under_20mm}};
   result.probability = probability_of(e);
   if (result.probability >= options.accept_probability) {
     result.verdict = Verdict::accepted;

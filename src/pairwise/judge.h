@@ -22,6 +22,8 @@ struct PairEvidence {
   double observability = 0;  ///< smallest over largest stiffness against translation, 0 = slides freely
   double num_supported = 0;  ///< voxel points on the other scan's surface, the smaller direction
   bool free_space = false;   ///< at least one scan has a known station
+  /// Of the source points that face a target point near them, the shares this close to its plane; said, not weighed.
+  double share_under_6mm = 0, share_under_20mm = 0;
 };
 
 /// Probability that the best hypothesis is right: logistic regression over the evidence, see docs/stages/verdict.md for

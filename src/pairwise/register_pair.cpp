@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -293,6 +294,28 @@ void fill_information(const ScanModel& source, const ScanModel& target, const Tr
   evidence.observability = stiffness[2] > 0 ? std::max(0.0, stiffness[0]) / stiffness[2] : 0;
 }
 
+// Residuals in metres, which sensors and tolerances are given in.
+void fill_shares(const ScanModel& source, const ScanModel& target, const Transform& t, PairEvidence& evidence) {
+  constexpr std::array<float, 2> kBounds = {0.006f, 0.020f};
+  constexpr float kMinFacing = 0.5f;
+  const Pose3f pose{t.linear().cast<float>(), t.translation().cast<float>()};
+  std::size_t faced = 0;
+  std::array<std::size_t, 2> under{};
+  for (std::size_t i = 0; i < source.points.size(); ++i) {
+    const Eigen::Vector3f p = pose.rotation * source.points[i] + pose.translation;
+    const std::int32_t j = target.fine.near(p);
+    if (j < 0 || target.variation[j] >= 1.0f) continue;
+    const Eigen::Vector3f& n = target.normals[j];
+    if (n.dot(pose.rotation * source.normals[i]) < kMinFacing) continue;
+    ++faced;
+    const float residual = std::abs(n.dot(p - target.points[j]));
+    for (std::size_t k = 0; k < kBounds.size(); ++k) under[k] += residual < kBounds[k] ? 1 : 0;
+  }
+  if (faced == 0) return;
+  evidence.share_under_6mm = static_cast<double>(under[0]) / static_cast<double>(faced);
+  evidence.share_under_20mm = static_cast<double>(under[1]) / static_cast<double>(faced);
+}
+
 // The next best pose of the best one's basin, and the best elsewhere. `ranked` is not empty.
 void note_rivals(const ScanModel& source, const std::vector<Hypothesis>& ranked, PairEvidence& evidence) {
   const Transform& best = ranked.front().target_from_source;
@@ -503,6 +526,7 @@ PairResult register_pair(const ScanProduct& source_product, const ScanProduct& t
                                     best.target.support * static_cast<double>(target.points.size()));
   evidence.free_space = source.scan.free_space.size > 0 || target.scan.free_space.size > 0;
   fill_information(fine_source, fine_target, best.target_from_source, evidence, result);
+  fill_shares(fine_source, fine_target, best.target_from_source, evidence);
   judge(evidence, options, result);
   watch.lap("verdict");
   return result;

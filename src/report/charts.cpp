@@ -16,7 +16,6 @@
 namespace isthmus::report {
 namespace {
 
-constexpr int kBins = 10;
 constexpr double kMatrixPx = 560;
 constexpr std::size_t kMaxLabelled = 40;
 
@@ -39,33 +38,29 @@ std::string verdict_class(const SolvedLink& link) {
   return word(r.verdict);
 }
 
-struct Bars {
-  std::array<std::array<int, 3>, kBins> counts{};  // accepted, ambiguous, rejected
-};
-
 constexpr std::array<const char*, 3> kStack{"accepted", "ambiguous", "rejected"};
 
 int stack_of(Verdict verdict) { return verdict == Verdict::accepted ? 0 : verdict == Verdict::ambiguous ? 1 : 2; }
 
 template <class Value>
-Bars binned(const SurveyRecord& record, Value value) {
-  Bars bars;
+VerdictBins binned(const SurveyRecord& record, Value value) {
+  VerdictBins bars;
   for (const SolvedLink& l : record.solution.links) {
     const PairResult& r = l.link.result;
     if (!r.target_from_source || r.verdict == Verdict::failed) continue;
-    const int bin = std::clamp(static_cast<int>(std::floor(value(r) * kBins)), 0, kBins - 1);
+    const int bin = std::clamp(static_cast<int>(std::floor(value(r) * kNumBins)), 0, kNumBins - 1);
     ++bars.counts[bin][stack_of(r.verdict)];
   }
   return bars;
 }
 
-std::string bar_chart(const Bars& bars, const std::array<std::string, 3>& axis, const std::string& caption) {
+std::string bar_chart(const VerdictBins& bars, const std::array<std::string, 3>& axis, const std::string& caption) {
   constexpr double kWidth = 420, kHeight = 150, kBase = 126, kTop = 14;
   int largest = 1;
   for (const auto& bin : bars.counts) largest = std::max(largest, std::accumulate(bin.begin(), bin.end(), 0));
   std::string out = fmt::format("<figure><svg class=\"bars\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">",
                                 kWidth, kHeight, escaped(caption));
-  for (int b = 0; b < kBins; ++b) {
+  for (int b = 0; b < kNumBins; ++b) {
     const double x = 10 + b * 40.0;
     double y = kBase;
     int total = 0;
@@ -108,20 +103,20 @@ std::string pair_matrix(const SurveyRecord& record) {
       "aria-label=\"Matrix of tried pairs\">",
       size);
   const auto square = [&](std::size_t row, std::size_t column, const std::string& css, double opacity,
-                          const std::string& title) {
+                          const std::string& title, const std::string& data) {
     fmt::format_to(
         std::back_inserter(svg),
-        "<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill-opacity=\"{:.2f}\">"
+        "<rect class=\"{}\" {} x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill-opacity=\"{:.2f}\">"
         "<title>{}</title></rect>",
-        css, label + cell * static_cast<double>(column) + 0.5, label + cell * static_cast<double>(row) + 0.5, cell - 1,
-        cell - 1, opacity, escaped(title));
+        css, data, label + cell * static_cast<double>(column) + 0.5, label + cell * static_cast<double>(row) + 0.5,
+        cell - 1, cell - 1, opacity, escaped(title));
   };
   fmt::format_to(std::back_inserter(svg),
                  "<rect class=\"sheet\" x=\"{0:.1f}\" y=\"{0:.1f}\" width=\"{1:.1f}\" height=\"{1:.1f}\"/>", label,
                  cell * static_cast<double>(n));
   for (std::size_t k = 0; k < n; ++k) {
     const std::string& name = find_scan(record, ids[k])->name;
-    square(k, k, "diagonal", 1.0, name);
+    square(k, k, "diagonal", 1.0, name, fmt::format("data-scan=\"{}\"", ids[k]));
     if (!labelled) continue;
     const double at = label + cell * (static_cast<double>(k) + 0.5);
     fmt::format_to(std::back_inserter(svg), "<text class=\"row\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", label - 6,
@@ -135,27 +130,36 @@ std::string pair_matrix(const SurveyRecord& record) {
     if (a == place.end() || b == place.end()) continue;
     const auto [low, high] = std::minmax(a->second, b->second);
     const std::string title = link_title(record, l);
-    square(high, low, verdict_class(l), 1.0, title);
+    const std::string data = fmt::format("data-link=\"{}-{}\"", l.link.source, l.link.target);
+    square(high, low, verdict_class(l), 1.0, title, data);
     if (l.link.result.target_from_source && l.link.result.verdict >= Verdict::ambiguous)
-      square(low, high, "overlap", std::clamp(0.08 + 1.2 * l.link.result.overlap, 0.0, 1.0), title);
+      square(low, high, "overlap", std::clamp(0.08 + 1.2 * l.link.result.overlap, 0.0, 1.0), title, data);
   }
   return svg + "</svg>";
 }
 
+VerdictBins overlap_bins(const SurveyRecord& record) {
+  return binned(record, [](const PairResult& r) { return r.overlap; });
+}
+
+VerdictBins residual_bins(const SurveyRecord& record) {
+  const double voxel = record.voxel_m > 0 ? record.voxel_m : 1.0;
+  return binned(record, [&](const PairResult& r) { return r.rms_m / voxel; });
+}
+
 std::string overlap_histogram(const SurveyRecord& record) {
-  return bar_chart(binned(record, [](const PairResult& r) { return r.overlap; }), {"0 %", "50 %", "100 %"},
+  return bar_chart(overlap_bins(record), {"0 %", "50 %", "100 %"},
                    "Overlap of the tried pairs (the smaller of both directions)");
 }
 
 std::string residual_histogram(const SurveyRecord& record) {
   const double voxel = record.voxel_m > 0 ? record.voxel_m : 1.0;
-  return bar_chart(binned(record, [&](const PairResult& r) { return r.rms_m / voxel; }),
-                   {"0", metres(0.5 * voxel), metres(voxel) + " = 1 voxel"},
+  return bar_chart(residual_bins(record), {"0", metres(0.5 * voxel), metres(voxel) + " = 1 voxel"},
                    "Residual over the overlap (point to plane, rms)");
 }
 
-std::string stage_times(const SurveyRecord& record) {
-  std::vector<std::pair<std::string, double>> sums;
+Seconds seconds_by_stage(const SurveyRecord& record) {
+  Seconds sums;
   const auto add = [&](const Seconds& seconds) {
     for (const auto& [stage, value] : seconds) {
       const auto at = std::find_if(sums.begin(), sums.end(), [&](const auto& s) { return s.first == stage; });
@@ -167,6 +171,11 @@ std::string stage_times(const SurveyRecord& record) {
   };
   for (const ScanRecord& scan : record.scans) add(scan.seconds);
   for (const SolvedLink& l : record.solution.links) add(l.link.result.seconds_by_stage);
+  return sums;
+}
+
+std::string stage_times(const SurveyRecord& record) {
+  const Seconds sums = seconds_by_stage(record);
   double largest = 0;
   for (const auto& [stage, value] : sums) largest = std::max(largest, value);
   if (largest <= 0) return "<p class=\"quiet\">Nothing was computed in this run: everything came from the store.</p>";

@@ -1,11 +1,22 @@
 // The pair matrix, histograms and stage times as SVG and HTML.
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "report/survey_record.h"
 
 namespace isthmus::report {
+
+inline constexpr int kNumBins = 10;
+struct VerdictBins {
+  std::array<std::array<int, 3>, kNumBins> counts{};  ///< accepted, ambiguous, rejected
+};
+/// Of pairs with a transform: overlap in tenths; residual in tenths of a voxel, the last bin with all beyond.
+VerdictBins overlap_bins(const SurveyRecord& record);
+VerdictBins residual_bins(const SurveyRecord& record);
+
+Seconds seconds_by_stage(const SurveyRecord& record);  ///< summed over scans and pairs
 
 /// A square per pair, scans ordered by component: below the diagonal the verdict, above it the overlap.
 std::string pair_matrix(const SurveyRecord& record);

@@ -12,91 +12,10 @@
 #include "report/page_parts.h"
 #include "report/plan_map.h"
 #include "report/run_json.h"
+#include "report/verdict_words.h"
 
 namespace isthmus::report {
 namespace {
-
-struct Headline {
-  const char* css;
-  std::string text;
-};
-
-Headline headline(const SurveyCounts& c) {
-  if (c.scans == 0) return {"bad", "No scan was found."};
-  if (c.failed == c.scans) return {"bad", "No scan could be read."};
-  if (c.in_largest == c.scans)
-    return {"good", c.scans == 1 ? "One scan: there is nothing to join."
-                                 : fmt::format("All {} scans stand in one survey.", c.scans)};
-  if (c.placed == 0) return {"bad", fmt::format("None of the {} scans could be joined to another.", c.scans)};
-  return {"partly", fmt::format("{} of {} scans stand in one survey.", c.in_largest, c.scans)};
-}
-
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
-
-template <class Value>
-std::vector<double> of_accepted(const SurveyRecord& record, Value value) {
-  std::vector<double> out;
-  for (const SolvedLink& l : record.solution.links)
-    if (l.link.result.verdict == Verdict::accepted) out.push_back(value(l));
-  return out;
-}
-
-std::string list_of(const std::vector<std::string>& names) {
-  std::string out;
-  const std::size_t shown = std::min<std::size_t>(names.size(), 6);
-  for (std::size_t k = 0; k < shown; ++k) out += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + names[k];
-  return names.size() > shown ? out + fmt::format(" and {} more", names.size() - shown) : out;
-}
-
-/// What is not in the main part, in words.
-std::string missing_sentence(const SurveyRecord& record, const SurveyCounts& c) {
-  std::vector<std::string> parts;
-  if (c.components > 1)
-    parts.push_back(fmt::format("{} in {} of their own", counted(c.placed - c.in_largest, "scan"),
-                                c.components == 2 ? "a part" : "parts"));
-  if (c.unplaced > 0) parts.push_back(counted(c.unplaced, "scan") + " without any trusted link");
-  if (c.failed > 0) parts.push_back(counted(c.failed, "scan") + " that could not be used");
-  if (parts.empty() || record.scans.size() < 2) return {};
-  return "Not joined: " + list_of(parts) + ". Below is what would join them. ";
-}
-
-std::string links_sentence(const SurveyRecord& record, const SurveyCounts& c) {
-  if (c.pairs == 0) return {};
-  std::string text = fmt::format("Of {} tried, {} {} accepted", counted(c.pairs, "pair"), c.accepted,
-                                 c.accepted == 1 ? "was" : "were");
-  if (c.accepted > 0)
-    text += c.confirmed == c.accepted ? ", every one confirmed by a loop"
-                                      : fmt::format("; loops confirm {} of them", c.confirmed);
-  text += ". ";
-  if (c.overruled > 0)
-    text += fmt::format("Loops rejected {} that looked right on {} own. ", counted(c.overruled, "link"),
-                        c.overruled == 1 ? "its" : "their");
-  if (c.promoted > 0)
-    text += fmt::format("Loops settled {} that {} ambiguous alone. ", counted(c.promoted, "link"),
-                        c.promoted == 1 ? "was" : "were");
-  const std::vector<double> off =
-      of_accepted(record, [](const SolvedLink& l) { return l.after ? l.after->translation_m : 0.0; });
-  if (off.size() >= 2 && c.confirmed > 0)
-    text += fmt::format("Links and solved poses agree to {} (median), at worst {}. ", metres(median_of(off)),
-                        metres(*std::max_element(off.begin(), off.end())));
-  return text;
-}
-
-/// Accepted links that nothing else confirms are the ones to check in the field.
-std::string bridges_sentence(const SurveyRecord& record) {
-  std::vector<std::string> names;
-  for (const SolvedLink& l : record.solution.links)
-    if (l.link.result.verdict == Verdict::accepted && !l.in_loop && !l.link.guided)
-      names.push_back(escaped(short_name(find_scan(record, l.link.source)->name, 20) + "–" +
-                              short_name(find_scan(record, l.link.target)->name, 20)));
-  if (names.empty()) return {};
-  return fmt::format("No loop checks {}: {}.", names.size() == 1 ? "one link that a part hangs on" : "these links",
-                     list_of(names));
-}
 
 std::string tile(const std::string& value, const std::string& label) {
   return fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>", value, label);
@@ -158,7 +77,9 @@ std::string links_section(const SurveyRecord& record, const SurveyCounts& c) {
     if (n > 0)
       out += fmt::format("<button data-verdict=\"{0}\" aria-pressed=\"false\">{0} {1}</button>", word(verdict), n);
   return out +
-         "<input id=\"needle\" type=\"search\" placeholder=\"Find a scan or a reason\" aria-label=\"Find\"></div><div "
+         "<span id=\"shown\" class=\"quiet count\"></span><input id=\"needle\" type=\"search\" placeholder=\"Scan, "
+         "reason, or overlap&lt;20 residual&gt;5\" "
+         "aria-label=\"Filter links by words and bounds\"></div><div "
          "class=\"scroll\">" +
          link_table(record) + "</div>";
 }
@@ -204,9 +125,8 @@ std::string html_report(const SurveyRecord& record) {
   page += fmt::format("<title>{} – Isthmus</title><style>{}</style></head><body><main>", escaped(title), kPageStyle);
   page += fmt::format("<header><b>Isthmus</b><span>{}</span><span>{}</span></header>", escaped(title),
                       escaped(record.run.started));
-  page += fmt::format("<h1 class=\"{}\">{}</h1>", head.css, head.text);
-  page += "<p class=\"lead\">" + missing_sentence(record, c) + links_sentence(record, c) + bridges_sentence(record) +
-          "</p>";
+  page += fmt::format("<h1 class=\"{}\">{}</h1>", head.grade, head.text);
+  page += "<p class=\"lead\">" + escaped(summary_text(record, c)) + "</p>";
   page += tiles(record, c);
   const std::string missing = missing_section(record);
   if (!missing.empty()) page += "<h2>Not joined</h2>" + missing;

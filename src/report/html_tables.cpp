@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numbers>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "report/html_text.h"
+#include "report/loop_closures.h"
 
 namespace isthmus::report {
 namespace {
@@ -32,9 +34,27 @@ const char* loop_text(const SolvedLink& l) {
   return l.in_loop ? "confirmed" : l.link.guided ? "guided" : "none";
 }
 
-std::string link_row(const SurveyRecord& record, const SolvedLink& l) {
+std::string share_cell(const std::optional<double>& share) {
+  return share ? number_cell(*share, percent(*share)) : empty_cell();
+}
+
+/// How well the place is fixed in its least certain direction: 0 slides freely.
+std::string observability_cell(const std::optional<double>& value) {
+  return value ? number_cell(*value, fmt::format("{:.2f}", *value)) : empty_cell();
+}
+
+std::string loop_cell(const SurveyRecord& record, const std::optional<LoopClosure>& loop) {
+  if (!loop) return empty_cell();
+  std::string via;
+  for (const int id : loop->via) via += (via.empty() ? "by way of " : ", ") + find_scan(record, id)->name;
+  return fmt::format("<td class=\"n\" data-v=\"{:.9g}\" title=\"{}\">{}</td>", loop->translation_m, escaped(via),
+                     metres(loop->translation_m));
+}
+
+std::string link_row(const SurveyRecord& record, const SolvedLink& l, const LoopClosures& loops) {
   const PairResult& r = l.link.result;
-  std::string row = fmt::format("<tr class=\"{}\" id=\"link-{}-{}\">", word(r.verdict), l.link.source, l.link.target);
+  std::string row = fmt::format("<tr class=\"{0}\" id=\"link-{1}-{2}\" data-link=\"{1}-{2}\" tabindex=\"0\">",
+                                word(r.verdict), l.link.source, l.link.target);
   row += name_cell(record, l.link.source) + name_cell(record, l.link.target);
   row += fmt::format("<td data-v=\"{}\"><b class=\"pill {}\">{}</b></td>", 3 - static_cast<int>(r.verdict),
                      word(r.verdict), word(r.verdict));
@@ -42,6 +62,8 @@ std::string link_row(const SurveyRecord& record, const SolvedLink& l) {
   row += number_cell(l.probability, fmt::format("{:.3f}", l.probability));
   row += r.target_from_source ? number_cell(r.overlap, percent(r.overlap)) + number_cell(r.rms_m, metres(r.rms_m))
                               : empty_cell() + empty_cell();
+  row += share_cell(evidence_term(r, "share_under_6mm")) + share_cell(evidence_term(r, "share_under_20mm"));
+  row += observability_cell(evidence_term(r, "observability")) + loop_cell(record, loops.of(l.link));
   row += l.after ? number_cell(l.after->translation_m, metres(l.after->translation_m)) +
                        number_cell(l.after->rotation_rad, degrees(l.after->rotation_rad))
                  : empty_cell() + empty_cell();
@@ -49,11 +71,21 @@ std::string link_row(const SurveyRecord& record, const SolvedLink& l) {
   return row;
 }
 
-std::string header(std::initializer_list<std::pair<const char*, const char*>> columns) {
+struct Column {
+  const char* name;
+  const char* help;
+  double unit = 1;  ///< what one stands for when the column is compared with a number in the filter
+};
+
+std::string header(std::initializer_list<Column> columns) {
   std::string out = "<thead><tr>";
-  for (const auto& [name, help] : columns) out += fmt::format("<th title=\"{}\" tabindex=\"0\">{}</th>", help, name);
+  for (const Column& column : columns)
+    out += fmt::format("<th title=\"{}\" tabindex=\"0\" data-unit=\"{:g}\">{}</th>", column.help, column.unit,
+                       column.name);
   return out + "</tr></thead>";
 }
+
+constexpr double kPercent = 0.01, kMillimetre = 0.001, kDegree = std::numbers::pi / 180;
 
 std::string advice(const SurveyRecord& record, const SolvedLink* best) {
   if (best == nullptr) return "No pair with the rest was tried. Name one under <code>candidates.groups</code>.";
@@ -77,19 +109,25 @@ std::string link_table(const SurveyRecord& record) {
     return rank(a) > rank(b);
   });
   std::string out = "<table class=\"sortable\" id=\"links\">";
-  out += header({{"source", "Later scan of the pair"},
-                 {"target", "Earlier scan of the pair"},
-                 {"verdict", "After the loops have spoken"},
-                 {"alone", "Probability that the link is right, from the pair alone"},
-                 {"with loops", "The same, given the loops that confirm it"},
-                 {"overlap", "Share of points with a facing point of the other scan; the smaller direction"},
-                 {"residual", "Point to plane over the overlap, root mean square"},
-                 {"off by", "Distance of this link from the solved poses at the source&#39;s centre"},
-                 {"turned by", "Rotation of this link against the solved poses"},
-                 {"loop", "Whether a loop of links confirms it"},
-                 {"reason", "Why the verdict is what it is"}});
+  out += header(
+      {{"source", "Later scan of the pair"},
+       {"target", "Earlier scan of the pair"},
+       {"verdict", "After the loops have spoken"},
+       {"alone", "Probability that the link is right, from the pair alone"},
+       {"with loops", "The same, given the loops that confirm it"},
+       {"overlap", "Share of points with a facing point of the other scan; the smaller direction", kPercent},
+       {"residual", "Point to plane over the overlap, root mean square", kMillimetre},
+       {"&lt; 6 mm", "Share of the facing points closer to the other scan&#39;s plane than 6 mm", kPercent},
+       {"&lt; 2 cm", "The same for 2 cm", kPercent},
+       {"balance", "Smallest over largest stiffness against shifts: 0 slides freely, 1 is held on all sides"},
+       {"loop error", "How far the shortest loop of other accepted links is from closing with this one", kMillimetre},
+       {"off by", "Distance of this link from the solved poses at the source&#39;s centre", kMillimetre},
+       {"turned by", "Rotation of this link against the solved poses", kDegree},
+       {"loop", "Whether a loop of links confirms it"},
+       {"reason", "Why the verdict is what it is"}});
   out += "<tbody>";
-  for (const SolvedLink* l : links) out += link_row(record, *l);
+  const LoopClosures loops(record);
+  for (const SolvedLink* l : links) out += link_row(record, *l, loops);
   return out + "</tbody></table>";
 }
 
@@ -115,7 +153,8 @@ std::string scan_table(const SurveyRecord& record) {
         });
     std::string notes = scan.reason;
     for (const std::string& note : scan.notes) notes += (notes.empty() ? "" : "; ") + note;
-    fmt::format_to(std::back_inserter(out), "<tr class=\"{}\" id=\"scan-{}\">", word(scan.status), scan.id);
+    fmt::format_to(std::back_inserter(out), "<tr class=\"{0}\" id=\"scan-{1}\" data-scan=\"{1}\" tabindex=\"0\">",
+                   word(scan.status), scan.id);
     out += number_cell(scan.id, std::to_string(scan.id));
     out += fmt::format("<td title=\"{}\">{}</td>", escaped(scan.name), escaped(scan.name));
     out += fmt::format("<td data-v=\"{}\"><b class=\"pill {}\">{}</b></td>", static_cast<int>(scan.status),

@@ -7,13 +7,13 @@ const char* const kPageStyle = R"css(
   color-scheme: light dark;
   --paper: #f6f4ef; --card: #ffffff; --ink: #1d2429; --quiet: #66727a; --rule: #dcd8ce; --land: #c9b27c; --sea: #e8eef0;
   --c0: #0b6e69; --c1: #3f9c86; --c2: #93b453; --c3: #e0a02f; --c4: #d1563f;
-  --accepted: #0b6e69; --ambiguous: #e0a02f; --rejected: #b9bfc2; --failed: #c63d4f; --accent: #0b6e69;
+  --accepted: #0b6e69; --ambiguous: #e0a02f; --rejected: #b9bfc2; --failed: #c63d4f; --accent: #0b6e69; --pick: #b0308f; --mark: #f9e8f4;
 }
 @media (prefers-color-scheme: dark) {
   :root {
     --paper: #12181b; --card: #1a2226; --ink: #e6eaeb; --quiet: #93a1a8; --rule: #2d383d; --land: #b99e5e; --sea: #162024;
     --c0: #35c2b4; --c1: #6fd09a; --c2: #b9d262; --c3: #f0b64a; --c4: #f07a5f;
-    --accepted: #35c2b4; --ambiguous: #f0b64a; --rejected: #4c585e; --failed: #f0697b; --accent: #35c2b4;
+    --accepted: #35c2b4; --ambiguous: #f0b64a; --rejected: #4c585e; --failed: #f0697b; --accent: #35c2b4; --pick: #f27fd0; --mark: #3a2335;
   }
 }
 * { box-sizing: border-box; }
@@ -44,7 +44,14 @@ svg { display: block; width: 100%; height: auto; } svg text { font: 11px system-
 .link.accepted { stroke-opacity: .85; } .link.ambiguous { stroke-dasharray: 7 6; stroke-opacity: .8; }
 .link.bridge { stroke-dasharray: 14 3 2 3; stroke-linecap: butt; }
 .link.rejected, .hue-r .link.rejected { stroke: var(--rejected); stroke-dasharray: 1 5; display: none; } .rejects .link.rejected { display: inline; }
-.plan .link:hover, .link.hot { stroke: var(--ink) !important; stroke-opacity: 1; cursor: pointer; display: inline; }
+.plan .link, .matrix [data-link], .matrix [data-scan] { cursor: pointer; }
+.plan .link:hover, .plan .link.hot { stroke: var(--pick) !important; stroke-opacity: 1; display: inline; }
+.plan .link.hot { stroke-width: 9px; } .plan .link.rejected.near, .plan .link.ambiguous.near { display: inline; }
+.picked .plan .link:not(.hot):not(.near) { stroke-opacity: .22; }
+.station.hot .dot, .station.near .dot { fill: var(--pick); stroke: var(--pick); } .station.hot .dot { stroke-width: 7; }
+.station:focus-visible { outline: none; } .station:focus-visible .dot { stroke: var(--pick); stroke-width: 5; }
+.matrix rect.hot, .matrix rect.diagonal.near { stroke: var(--pick); stroke-width: 3; } .matrix rect.diagonal.near, .matrix rect.diagonal.hot { fill: var(--pick); }
+.matrix rect.near { stroke: var(--pick); stroke-width: 1.2; }
 .station .dot { fill: var(--card); stroke: var(--ink); stroke-width: 2; } .station.anchor .dot { fill: var(--ink); }
 .station .ring { fill: none; stroke: var(--ink); stroke-width: 1.2; } .station { cursor: pointer; }
 .station:hover .dot { fill: var(--accent); } .plan .label { pointer-events: none; fill: var(--ink); font-size: 12px; paint-order: stroke; stroke: var(--sea);
@@ -68,7 +75,9 @@ svg.key { width: 34px; height: 10px; margin-left: 8px; } svg.key.round { width: 
 table { border-collapse: collapse; width: 100%; font-size: 13.5px; } td, th { padding: 5px 12px; text-align: left; vertical-align: top; white-space: nowrap; }
 .sortable th { position: sticky; top: 0; background: var(--card); box-shadow: inset 0 -1px var(--rule); cursor: pointer; font-weight: 600; z-index: 1; }
 .sortable th:hover { color: var(--accent); } th.up::after { content: " ↑"; } th.down::after { content: " ↓"; }
-tbody tr + tr td { border-top: 1px solid var(--rule); } .sortable tbody tr:hover, tr.hot { background: var(--sea); }
+tbody tr + tr td { border-top: 1px solid var(--rule); } .sortable tbody tr { cursor: pointer; } .sortable tbody tr:hover { background: var(--sea); }
+tr.hot, .sortable tbody tr.hot:hover { background: var(--mark); box-shadow: inset 4px 0 var(--pick); } tr.near { box-shadow: inset 4px 0 var(--pick); }
+:focus-visible { outline: 2px solid var(--pick); outline-offset: -2px; }
 td.n { text-align: right; font-variant-numeric: tabular-nums; } td.why { white-space: normal; min-width: 260px; color: var(--quiet); }
 .pill { font-size: 12px; font-weight: 600; padding: 1px 9px; border-radius: 99px; border: 1px solid currentColor; }
 .pill.accepted, .pill.placed { color: var(--accepted); } .pill.ambiguous, .pill.unplaced { color: var(--ambiguous); }
@@ -76,14 +85,16 @@ td.n { text-align: right; font-variant-numeric: tabular-nums; } td.why { white-s
 .filters { display: flex; flex-wrap: wrap; gap: 8px; margin-bottom: 8px; } .filters button, .filters input { font: inherit; font-size: 13px;
   color: var(--ink); background: var(--card); border: 1px solid var(--rule); border-radius: 99px; padding: 3px 14px; }
 .filters button { cursor: pointer; } .filters button[aria-pressed=true] { background: var(--accent); border-color: var(--accent); color: var(--card); }
-.filters input { margin-left: auto; min-width: 220px; }
+.filters .count { margin-left: auto; align-self: center; } .filters input { min-width: 300px; }
 ul.missing { list-style: none; padding: 0; margin: 0; } .missing li { background: var(--card); border: 1px solid var(--rule); border-left: 4px solid var(--ambiguous);
   border-radius: 8px; padding: 10px 16px; margin-bottom: 8px; } .missing li.failed { border-left-color: var(--failed); } .missing p { margin: 4px 0 0; color: var(--quiet); }
 .warnings li { margin-bottom: 4px; } details { margin: 10px 0; } summary { cursor: pointer; font-weight: 600; }
 pre { overflow: auto; background: var(--card); border: 1px solid var(--rule); border-radius: 8px; padding: 12px 16px; font-size: 12.5px; max-height: 480px; }
 .facts { width: auto; } .facts th { color: var(--quiet); font-weight: 500; } .facts td { white-space: normal; word-break: break-all; }
 .times th { font-weight: 500; width: 1%; } .times td.n { width: 1%; } .times .bar i { display: block; height: 9px; margin-top: 6px; border-radius: 5px; background: var(--accent); min-width: 2px; }
-@media print { .filters, .switch { display: none; } .scroll { max-height: none; } body { background: #fff; } }
+@media print { .filters, .switch { display: none; } .scroll { max-height: none; overflow: visible; border: 0; } body { background: #fff; font-size: 11px; }
+  main { max-width: none; padding: 0; } .card, figure, li, tr { break-inside: avoid; } h2 { break-after: avoid; } details { display: none; }
+  table { font-size: 9px; } td, th { padding: 2px 5px; } td.why { min-width: 0; } }
 )css";
 
 }  // namespace isthmus::report

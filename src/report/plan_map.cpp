@@ -185,7 +185,8 @@ void draw_stations(std::string& svg, const SurveyRecord& record, const Component
   for (const auto& [id, spot] : layout.spots) {
     const ScanRecord& scan = *find_scan(record, id);
     const bool anchor = id == component.anchor;
-    fmt::format_to(std::back_inserter(svg), "<g class=\"station{}\" data-scan=\"{}\"><title>{}</title>",
+    fmt::format_to(std::back_inserter(svg),
+                   "<g class=\"station{}\" data-scan=\"{}\" tabindex=\"0\" role=\"button\"><title>{}</title>",
                    anchor ? " anchor" : "", id, escaped(station_title(scan, *record.solution.find(id), anchor)));
     if (anchor)
       fmt::format_to(std::back_inserter(svg), "<circle class=\"ring\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"/>",

@@ -57,6 +57,12 @@ std::optional<int> component_of(const SurveyRecord& record, int id) {
   return placed == nullptr ? std::nullopt : std::optional<int>(placed->component);
 }
 
+std::optional<double> evidence_term(const PairResult& result, std::string_view name) {
+  const auto at =
+      std::ranges::find(result.evidence, name, [](const auto& term) { return std::string_view(term.first); });
+  return at == result.evidence.end() ? std::nullopt : std::optional<double>(at->second);
+}
+
 const SolvedLink* best_open_link(const SurveyRecord& record, int component) {
   const SolvedLink* best = nullptr;
   for (const SolvedLink& l : record.solution.links) {

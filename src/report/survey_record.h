@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -90,6 +91,9 @@ Transform target_from_source_in_scans(const SurveyRecord& record, const Link& li
 
 /// Its information for a right perturbation in the source's scan frame: d_scan = Ad(local origin) d_local.
 Matrix6d information_in_scan(const Matrix6d& information, const Eigen::Vector3d& local_origin_in_scan);
+
+/// A term of the pair's evidence, if it was weighed.
+std::optional<double> evidence_term(const PairResult& result, std::string_view name);
 
 /// The most probable tried link between this scan's component and any other, accepted ones excluded.
 const SolvedLink* best_open_link(const SurveyRecord& record, int component);

@@ -34,6 +34,14 @@ void expect_complete(const PairResult& result) {
   EXPECT_TRUE(result.information.allFinite());
 }
 
+double evidence_of(const PairResult& result, const std::string& name) {
+  for (const auto& [term, value] : result.evidence) {
+    if (term == name) return value;
+  }
+  ADD_FAILURE() << "no term " << name;
+  return -1;
+}
+
 TEST(RegisterPair, PartialOverlapUnderAHeading) {
   const PartialOverlap pair = partial_overlap(1, {0, 0, 2.4}, 500000);
   ASSERT_FALSE(pair.source.sampled.fine.points.empty()) << "dense enough for the fine level";
@@ -90,7 +98,19 @@ TEST(RegisterPair, TwoScansFromOnePlaceLieOnEachOther) {
   const testing::Scene hall = testing::furnished_hall(3);
   const ScanProduct one =
       testing::product_of(testing::scan_scene(hall, pose_of({0, 0, 1.7}), {60000, 1e6, 0.004, 1}), kHallVoxel);
-  expect_right(register_pair(one, one, PairOptions{}), one, Transform::Identity());
+  const PairResult result = register_pair(one, one, PairOptions{});
+  expect_right(result, one, Transform::Identity());
+  // The lookup finds a point near, not the nearest: on curved and cluttered places another plane.
+  EXPECT_GT(evidence_of(result, "share_under_6mm"), 0.9);
+}
+
+TEST(RegisterPair, SharesUnderABoundGrowWithTheBound) {
+  const PartialOverlap pair = partial_overlap(1, {0, 0, 2.4});
+  const PairResult result = register_pair(pair.source, pair.target, PairOptions{});
+  const double tight = evidence_of(result, "share_under_6mm"), wide = evidence_of(result, "share_under_20mm");
+  EXPECT_GT(tight, 0.1);
+  EXPECT_LT(tight, wide);
+  EXPECT_LE(wide, 1);
 }
 
 TEST(RegisterPair, APriorIsJudgedLikeAnyHypothesis) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -11,7 +12,9 @@
 #include "base/atomic_file.h"
 #include "report/csv.h"
 #include "report/html_report.h"
+#include "report/loop_closures.h"
 #include "report/pose_files.h"
+#include "report/report_json.h"
 #include "report/run_json.h"
 #include "report/sample_record.h"
 #include "report/tables.h"
@@ -138,7 +141,7 @@ TEST(Outputs, LinksTableHasEveryPairWithEvidenceButNoTimings) {
   EXPECT_EQ(std::vector<std::string>(rows[0].begin(), rows[0].begin() + 7),
             (std::vector<std::string>{"source", "target", "verdict", "reason", "probability", "overlap", "rms_m"}));
   for (const auto& row : rows) EXPECT_EQ(row.size(), rows[0].size());
-  EXPECT_EQ(rows[0][rows[0].size() - 2], "support");
+  EXPECT_EQ(rows[0][rows[0].size() - 5], "support");
   for (SolvedLink& l : record.solution.links) l.link.result.seconds_by_stage = {{"hypotheses", 9.0}};
   EXPECT_EQ(links_csv(record), before);
   EXPECT_NE(timings_csv(record).find("hypotheses,9"), std::string::npos);
@@ -247,13 +250,126 @@ TEST(Outputs, RunJsonKeepsWhatVariesInOneSection) {
   EXPECT_FALSE(nlohmann::json::parse(run_json(record)).is_discarded());
 }
 
+/// Four scans on a square of 10 m, each side a link; the second side is off by 30 cm along x and 3 degrees about its
+/// source's centre.
+SurveyRecord square_with_one_bad_side() {
+  SurveyRecord record;
+  for (int id = 0; id < 4; ++id) {
+    ScanRecord scan;
+    scan.id = id;
+    scan.centre = Eigen::Vector3d(1, 2, 0);
+    record.scans.push_back(scan);
+  }
+  const std::array<Eigen::Vector3d, 4> stations = {{{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}}};
+  for (int id = 0; id < 4; ++id) {
+    SolvedLink l;
+    l.link.source = id;
+    l.link.target = (id + 1) % 4;
+    l.link.result.verdict = Verdict::accepted;
+    Transform t = Transform::Identity();
+    t.translation() = stations[l.link.source] - stations[l.link.target];
+    if (id == 1) {
+      const Eigen::Vector3d& centre = record.scans[1].centre;
+      t = t * Eigen::Translation3d(0.3, 0, 0) * Eigen::Translation3d(centre) *
+          Eigen::AngleAxisd(0.0524, Eigen::Vector3d::UnitZ()) * Eigen::Translation3d(-centre);
+    }
+    l.link.result.target_from_source = t;
+    record.solution.links.push_back(l);
+  }
+  return record;
+}
+
+TEST(LoopClosures, ABadLinkMissesByWhatItIsOff) {
+  const SurveyRecord record = square_with_one_bad_side();
+  const LoopClosures loops(record);
+  const auto bad = loops.of(record.solution.links[1].link);
+  ASSERT_TRUE(bad);
+  EXPECT_EQ(bad->via, (std::vector<int>{0, 3}));
+  EXPECT_NEAR(bad->translation_m, 0.3, 1e-9);
+  EXPECT_NEAR(bad->rotation_rad, 0.0524, 1e-9);
+}
+
+TEST(LoopClosures, BridgesAndRejectedLinksMakeNoLoop) {
+  SurveyRecord record = square_with_one_bad_side();
+  record.solution.links[2].link.result.verdict = Verdict::rejected;
+  const LoopClosures loops(record);
+  EXPECT_FALSE(loops.of(record.solution.links[1].link)) << "what is left is a chain";
+  const auto rejected = loops.of(record.solution.links[2].link);
+  ASSERT_TRUE(rejected) << "a rejected link is judged by the accepted ones";
+  EXPECT_EQ(rejected->via, (std::vector<int>{1, 0}));
+}
+
+TEST(LoopClosures, TheDirectNeighbourIsTheShortestWay) {
+  SurveyRecord record = square_with_one_bad_side();
+  SolvedLink diagonal = record.solution.links[0];
+  diagonal.link.source = 2;
+  diagonal.link.target = 0;
+  diagonal.link.result.target_from_source->translation() = Eigen::Vector3d(10, 10, 0);
+  record.solution.links.push_back(diagonal);
+  const LoopClosures loops(record);
+  EXPECT_EQ(loops.of(record.solution.links[3].link)->via, (std::vector<int>{2}));
+  EXPECT_NEAR(loops.of(record.solution.links[3].link)->translation_m, 0, 1e-9);
+}
+
+TEST(Outputs, ReportJsonSaysWhatThePageSays) {
+  SurveyRecord record = sample_record(14);
+  const auto json = nlohmann::json::parse(report_json(record));
+  EXPECT_EQ(json["verdict"]["grade"], "partly");
+  EXPECT_EQ(json["verdict"]["headline"], "12 of 15 scans stand in one survey.");
+  ASSERT_EQ(json["scans"].size(), 15U);
+  EXPECT_TRUE(json["scans"][14]["pose"].is_null());
+  EXPECT_EQ(json["scans"][14]["status"], "failed");
+  ASSERT_EQ(json["links"].size(), record.solution.links.size());
+  std::size_t loops = 0;
+  for (std::size_t k = 0; k < json["links"].size(); ++k) {
+    const auto& link = json["links"][k];
+    const PairResult& r = record.solution.links[k].link.result;
+    EXPECT_DOUBLE_EQ(link["overlap"], r.overlap);
+    EXPECT_DOUBLE_EQ(link["rms_m"], r.rms_m);
+    for (const char* name : {"share_under_6mm", "share_under_20mm", "observability"}) {
+      const std::optional<double> term = evidence_term(r, name);
+      EXPECT_EQ(link[name], term ? nlohmann::json(*term) : nlohmann::json(nullptr)) << name;
+    }
+    EXPECT_EQ(link["verdict"], word(r.verdict));
+    loops += link["loop"].is_null() ? 0 : 1;
+  }
+  EXPECT_GT(loops, 0U);
+  // Two scans hang apart; each says which link came nearest.
+  ASSERT_EQ(json["components"].size(), 3U);
+  EXPECT_EQ(json["components"][1]["nearest_to_joining"]["reason"], "slides along the facade");
+  int binned = 0;
+  for (const char* verdict : {"accepted", "ambiguous", "rejected"})
+    for (const int n : json["histograms"]["overlap"][verdict]) binned += n;
+  EXPECT_EQ(binned, count(record).pairs - count(record).pairs_failed);
+  EXPECT_DOUBLE_EQ(json["seconds_by_stage"]["read"], 14 * 1.2);
+  EXPECT_EQ(json["run"]["threads"], 2);
+  record.scans[0].name = "broken\xff name";
+  EXPECT_FALSE(nlohmann::json::parse(report_json(record)).is_discarded());
+}
+
+TEST(Html, EveryLinkIsMarkedInTableMapAndMatrix) {
+  const SurveyRecord record = sample_record(14);
+  const std::string page = html_report(record);
+  const auto times = [&](const std::string& what) {
+    std::size_t n = 0;
+    for (std::size_t at = page.find(what); at != std::string::npos; at = page.find(what, at + 1)) ++n;
+    return n;
+  };
+  const SolvedLink& first = record.solution.links.front();
+  ASSERT_EQ(first.link.result.verdict, Verdict::accepted);
+  // Row, line of the plan, and both halves of the matrix.
+  EXPECT_EQ(times(fmt::format("data-link=\"{}-{}\"", first.link.source, first.link.target)), 4U);
+  EXPECT_EQ(times("data-scan=\"3\""), 3U) << "row, station, diagonal";
+  EXPECT_NE(page.find("&lt; 6 mm"), std::string::npos);
+}
+
 TEST(Outputs, EmptySurveyStillGivesEveryFile) {
   const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "isthmus_empty_outputs";
   std::filesystem::remove_all(folder);
   const Result<void> written = write_outputs(SurveyRecord{}, folder);
   ASSERT_TRUE(written) << written.error().text();
-  for (const char* name :
-       {"scans.csv", "poses.txt", "pose_graph.g2o", "links.csv", "timings.csv", "run.json", "report.html"})
+  for (const char* name : {"scans.csv", "poses.txt", "pose_graph.g2o", "links.csv", "timings.csv", "run.json",
+                           "report.html", "report.json"})
     EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
   EXPECT_EQ(*read_file(folder / "poses.txt"), "");
   EXPECT_NE(read_file(folder / "report.html")->find("No scan was found."), std::string::npos);

@@ -39,7 +39,11 @@ inline report::SurveyRecord sample_record(int num_scans) {
       link.result.rms_m = kVoxel * world.rng.uniform(0.05, 0.45);
       if (link.result.verdict != Verdict::accepted)
         link.result.reason = "a rival pose 1.0 m away explains the points as well";
-      link.result.evidence = {{"support", overlap}, {"contradiction", 0.01}};
+      link.result.evidence = {{"support", overlap},
+                              {"contradiction", 0.01},
+                              {"observability", world.rng.uniform(0.02, 0.9)},
+                              {"share_under_6mm", world.rng.uniform(0.2, 0.7)},
+                              {"share_under_20mm", world.rng.uniform(0.7, 1.0)}};
       link.result.seconds_by_stage = {{"hypotheses", 0.2}, {"refine", 0.1}};
     }
   }

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -102,6 +105,79 @@ TEST_F(PoseExports, TumAndKittiAndCsvHoldThePosesOfOneComponent) {
   EXPECT_FALSE(kitti >> line);
   EXPECT_FALSE(std::getline(csv, line));
   EXPECT_TRUE(export_poses(survey, 99, PoseFormat::tum).empty());
+}
+
+// 3DTK's own composition of a .pose (Nuechter's EulerToMatrix4, column by column), as a second reader.
+Eigen::Matrix4d read_pose_of_3dtk(const std::string& text) {
+  std::istringstream in(text);
+  double x = 0, y = 0, z = 0, a = 0, b = 0, c = 0;
+  EXPECT_TRUE(in >> x >> y >> z >> a >> b >> c) << text;
+  const double rad = std::acos(-1.0) / 180;
+  const double sx = std::sin(a * rad), cx = std::cos(a * rad), sy = std::sin(b * rad), cy = std::cos(b * rad),
+               sz = std::sin(c * rad), cz = std::cos(c * rad);
+  Eigen::Matrix4d m;
+  m.transpose() << cy * cz, sx * sy * cz + cx * sz, -cx * sy * cz + sx * sz, 0,  //
+      -cy * sz, -sx * sy * sz + cx * cz, cx * sy * sz + sx * cz, 0,              //
+      sy, -sx * cy, cx * cy, 0,                                                  //
+      x, y, z, 1;
+  return m;
+}
+
+TEST_F(PoseExports, Files3dtkReadsPutAPointWhereOursDo) {
+  const std::vector<int> ids = ids_of_largest();
+  std::map<std::string, std::string> files;
+  for (const PoseFile& file : export_pose_files(survey, 0, PoseFormat::dtk)) files[file.name] = file.text;
+  ASSERT_EQ(files.size(), 2 * ids.size() + 1);
+  const Eigen::Vector3d p_in_scan(3, -2, 1);
+  // A scan of ours in 3DTK's coordinates: centimetres, x to the right, y up, z ahead.
+  const auto to_3dtk = [](const Eigen::Vector3d& p) { return Eigen::Vector3d(-100 * p.y(), 100 * p.z(), 100 * p.x()); };
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    const Eigen::Vector3d expected = to_3dtk(component_from_scan(record, ids[k]) * p_in_scan);
+    const std::string stem = fmt::format("scan{:03}", k);
+    const Eigen::Matrix4d pose = read_pose_of_3dtk(files.at(stem + ".pose"));
+    EXPECT_LT(((pose * to_3dtk(p_in_scan).homogeneous()).head<3>() - expected).norm(), 1e-6) << stem;
+    std::istringstream in(files.at(stem + ".frames"));
+    Eigen::Matrix4d frame;
+    for (int j = 0; j < 16; ++j) in >> frame(j % 4, j / 4);
+    int type = -1;
+    EXPECT_TRUE(in >> type);
+    EXPECT_LT(((frame * to_3dtk(p_in_scan).homogeneous()).head<3>() - expected).norm(), 1e-6) << stem;
+    EXPECT_NE(files.at("names.csv").find(stem + "," + find_scan(record, ids[k])->name + "\n"), std::string::npos);
+  }
+}
+
+TEST_F(PoseExports, PosesOf3dtkHoldWhereItsAnglesAreNotUnique) {
+  for (const double sign : {-1.0, 1.0}) {
+    FinishedSurvey straight;
+    FinishedScan scan;
+    // In 3DTK's axes a turn by a right angle about y.
+    scan.component_from_scan.linear() = (Eigen::AngleAxisd(sign * std::acos(0.0), Eigen::Vector3d::UnitZ()) *
+                                         Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitY()))
+                                            .toRotationMatrix();
+    straight.scans.push_back(scan);
+    const Eigen::Matrix4d pose = read_pose_of_3dtk(export_pose_files(straight, 0, PoseFormat::dtk).front().text);
+    Eigen::Matrix3d axes;
+    axes << 0, -1, 0, 0, 0, 1, 1, 0, 0;
+    EXPECT_TRUE(
+        (pose.topLeftCorner<3, 3>()).isApprox(axes * scan.component_from_scan.linear() * axes.transpose(), 1e-6));
+  }
+}
+
+TEST_F(PoseExports, RiscanHasTheMatrixOfEachScanUnderItsName) {
+  const std::vector<int> ids = ids_of_largest();
+  const std::vector<PoseFile> files = export_pose_files(survey, 0, PoseFormat::riscan);
+  ASSERT_EQ(files.size(), ids.size());
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    EXPECT_EQ(files[k].name, fmt::format("street/station_{:03}.DAT", ids[k]));
+    std::istringstream in(files[k].text);
+    Eigen::Matrix4d m;
+    for (int j = 0; j < 16; ++j) EXPECT_TRUE(in >> m(j / 4, j % 4));
+    EXPECT_TRUE(m.isApprox(component_from_scan(record, ids[k]).matrix(), 1e-12));
+  }
+  survey.scans[0].name = "site.v2/many.e57#3";
+  EXPECT_EQ(export_pose_files(survey, survey.scans[0].component, PoseFormat::riscan)[0].name, "site.v2/many#3.DAT");
+  survey.scans[0].name = "site.v2/plain";
+  EXPECT_EQ(export_pose_files(survey, survey.scans[0].component, PoseFormat::riscan)[0].name, "site.v2/plain.DAT");
 }
 
 // The error that Open3D minimises, differentiated: the same cost as the pair stage's information gives.

@@ -3,15 +3,21 @@
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "base/atomic_file.h"
 #include "commands.h"
 #include "exit_codes.h"
+#include "io/cloud_writer.h"
 #include "io/scan_directory.h"
 #include "io/wording.h"
-#include "pipelines/e57_export.h"
+#include "pipelines/merged_export.h"
+#include "pipelines/ptx_export.h"
 #include "report/pose_exports.h"
 #include "terminal.h"
 
@@ -40,8 +46,13 @@ struct ExportRun {
   std::string poses;
   std::string file;
   std::string e57;
+  std::string ptx;
+  std::string merged;
+  std::optional<double> voxel_m;
   std::string scans;
   int component = 0;
+
+  bool wants_scans() const { return !e57.empty() || !ptx.empty() || !merged.empty(); }
 
   int run() const {
     Terminal terminal;
@@ -65,33 +76,77 @@ struct ExportRun {
           fmt::format("{} scans in other components have another frame and are left out (--component K)", elsewhere));
     }
     if (auto written = poses.empty() ? Result<void>() : write_poses(survey); !written) return written;
-    return e57.empty() ? Result<void>() : write_e57(survey, terminal);
+    return wants_scans() ? write_scans(survey, terminal) : Result<void>();
   }
 
   Result<void> write_poses(const report::FinishedSurvey& survey) const {
-    const std::string text = report::export_poses(survey, component, *report::pose_format(poses));
+    const report::PoseFormat format = *report::pose_format(poses);
+    if (report::has_file_per_scan(format)) {
+      if (file.empty())
+        return fail("this format has files for each scan", "--poses " + poses, "name a folder: -o FOLDER");
+      return write_files(file, report::export_pose_files(survey, component, format));
+    }
+    const std::string text = report::export_poses(survey, component, format);
     if (!file.empty()) return write_file_atomically(file, text);
     fmt::print("{}", text);
     return {};
   }
 
-  Result<void> write_e57(const report::FinishedSurvey& survey, Terminal& terminal) const {
+  static Result<void> write_files(const fs::path& folder, const std::vector<report::PoseFile>& files) {
+    for (const report::PoseFile& pose : files) {
+      const fs::path path = folder / pose.name;
+      std::error_code error;
+      fs::create_directories(path.parent_path(), error);
+      if (error) return fail("folder cannot be created: " + error.message(), path.parent_path().string());
+      if (Result<void> written = write_file_atomically(path, pose.text); !written) return written;
+    }
+    return {};
+  }
+
+  /// The component's scans where they lie, and the folder they lie in.
+  Result<std::pair<fs::path, std::vector<pipelines::SourcedScan>>> placed_scans(
+      const report::FinishedSurvey& survey) const {
     const Result<fs::path> base = scans.empty() ? input_folder(out) : Result<fs::path>(fs::path(scans));
     if (!base) return tl::unexpected(base.error());
-    std::vector<pipelines::PlacedScan> placed;
+    std::vector<pipelines::SourcedScan> placed;
     for (const report::FinishedScan& scan : survey.scans) {
       if (scan.component != component) continue;
       Result<io::ScanRef> ref = io::resolve_scan_name((*base / scan.name).string());
       if (!ref) return tl::unexpected(std::move(ref.error()));
+      if (scan.id >= std::numeric_limits<std::uint16_t>::max())
+        return fail("sources are counted up to 65535", out, "export components or parts");
       ref->name = scan.name;
-      placed.push_back({std::move(*ref), scan.component_from_scan});
+      placed.push_back({{std::move(*ref), scan.component_from_scan}, static_cast<std::uint16_t>(scan.id + 1)});
     }
+    return std::pair(*base, std::move(placed));
+  }
+
+  Result<void> write_scans(const report::FinishedSurvey& survey, Terminal& terminal) const {
+    const auto scans_of_part = placed_scans(survey);
+    if (!scans_of_part) return tl::unexpected(scans_of_part.error());
+    const auto& [base, sourced] = *scans_of_part;
+    std::vector<pipelines::PlacedScan> placed;
+    for (const pipelines::SourcedScan& scan : sourced) placed.push_back(scan.placed);
+    if (auto done = e57.empty() ? Result<void>() : write_e57(base, placed, terminal); !done) return done;
+    if (!ptx.empty()) {
+      if (auto done = pipelines::export_ptx(ptx, placed); !done) return done;
+      terminal.say(fmt::format("{} scans in {}", placed.size(), ptx));
+    }
+    if (merged.empty()) return {};
+    const Result<std::uint64_t> count = pipelines::export_merged(merged, sourced, voxel_m);
+    if (!count) return tl::unexpected(count.error());
+    terminal.say(fmt::format("{} points of {} scans in {}", *count, placed.size(), merged));
+    return {};
+  }
+
+  Result<void> write_e57(const fs::path& base, const std::vector<pipelines::PlacedScan>& placed,
+                         Terminal& terminal) const {
     if (io::lower_case(fs::path(e57).extension().string()) == ".e57") {
       auto written = pipelines::export_e57_file(e57, placed);
       if (written) terminal.say(fmt::format("{} scans in {}", placed.size(), e57));
       return written;
     }
-    const auto written = pipelines::export_e57_folder(e57, *base, placed);
+    const auto written = pipelines::export_e57_folder(e57, base, placed);
     if (!written) return tl::unexpected(written.error());
     terminal.say(fmt::format("{} scans in {} files in {}", placed.size(), written->size(), e57));
     return {};
@@ -105,24 +160,37 @@ void add_export(CLI::App& app, int& exit_code) {
   auto run = std::make_shared<ExportRun>();
   command->add_option("OUT", run->out, "Output folder of 'register'")->required();
   CLI::Option* poses =
-      command->add_option("--poses", run->poses, "Poses as open3d (PoseGraph JSON, with the links), tum, kitti or csv")
+      command
+          ->add_option("--poses", run->poses,
+                       "Poses as open3d (PoseGraph JSON, with the links), tum, kitti, csv, 3dtk or riscan")
           ->type_name("FORMAT")
-          ->check(CLI::IsMember({"open3d", "tum", "kitti", "csv"}));
-  command->add_option("-o,--output", run->file, "File for the poses (default: standard output)")
+          ->check(CLI::IsMember({"open3d", "tum", "kitti", "csv", "3dtk", "riscan"}));
+  command
+      ->add_option("-o,--output", run->file,
+                   "File for the poses (default: standard output); folder for 3dtk and riscan")
       ->type_name("FILE")
       ->needs(poses);
-  CLI::Option* e57 = command
-                         ->add_option("--e57", run->e57,
-                                      "Scans with their poses as E57: all in FILE.e57, or one file each in a folder")
-                         ->type_name("PATH");
-  command->add_option("--scans", run->scans, "Folder of the scans (default: by OUT/run.json)")
-      ->type_name("DIR")
-      ->needs(e57);
+  command->add_option("--e57", run->e57, "Scans with their poses as E57: all in FILE.e57, or one file each in a folder")
+      ->type_name("PATH");
+  command->add_option("--ptx", run->ptx, "Scans with their poses filled in as one PTX file")->type_name("FILE.ptx");
+  CLI::Option* merged =
+      command->add_option("--merged", run->merged, "All scans as one cloud: FILE.las, FILE.ply or FILE.pcd")
+          ->type_name("FILE")
+          ->check([](const std::string& file) {
+            return io::CloudWriter::knows(file) ? std::string() : file + " ends in none of .las, .ply, .pcd";
+          });
+  command->add_option("--voxel", run->voxel_m, "Keep one point of the merged cloud in each cube of this edge, metres")
+      ->type_name("METRES")
+      ->check(CLI::PositiveNumber)
+      ->needs(merged);
+  CLI::Option* scans =
+      command->add_option("--scans", run->scans, "Folder of the scans (default: by OUT/run.json)")->type_name("DIR");
   command->add_option("--component", run->component, "Which component (default: 0, the largest)")
       ->type_name("K")
       ->check(CLI::NonNegativeNumber);
-  command->callback([run, &exit_code] {
-    if (run->poses.empty() && run->e57.empty()) throw CLI::RequiredError("--poses or --e57");
+  command->callback([run, scans, &exit_code] {
+    if (run->poses.empty() && !run->wants_scans()) throw CLI::RequiredError("--poses, --e57, --ptx or --merged");
+    if (scans->count() > 0 && !run->wants_scans()) throw CLI::RequiredError("--scans needs --e57, --ptx or --merged");
     exit_code = run->run();
   });
 }

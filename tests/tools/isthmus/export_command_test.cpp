@@ -6,6 +6,8 @@
 #include "io/e57/e57_writer.h"
 #include "io/scan_writer.h"
 
+#include <sstream>
+
 namespace isthmus {
 namespace {
 
@@ -82,6 +84,18 @@ TEST_F(ExportCommand, PosesGoToStandardOutputOrAFile) {
   EXPECT_EQ(testing::text_of_file(folder_ / "k.txt"), "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 9 0 0 1 0\n");
 }
 
+TEST_F(ExportCommand, FormatsWithAFileForEachScanWantAFolder) {
+  const testing::Said nowhere = run({"--poses", "3dtk"});
+  EXPECT_EQ(nowhere.exit_code, 1);
+  EXPECT_NE(nowhere.err.find("-o FOLDER"), std::string::npos) << nowhere.err;
+  EXPECT_EQ(run({"--poses", "riscan", "-o", (folder_ / "sop").string()}).exit_code, 0);
+  EXPECT_EQ(testing::text_of_file(folder_ / "sop/many#2.DAT"), "0 -1 0 5\n1 0 0 6\n0 0 1 7\n0 0 0 1\n");
+  EXPECT_TRUE(fs::exists(folder_ / "sop/sub/a%20b.DAT"));
+  EXPECT_EQ(run({"--poses", "3dtk", "-o", (folder_ / "dtk").string()}).exit_code, 0);
+  EXPECT_EQ(testing::text_of_file(folder_ / "dtk/names.csv"),
+            "scan,name\nscan000,many.e57#0\nscan001,many.e57#2\nscan002,sub/a%20b.ply\n");
+}
+
 TEST_F(ExportCommand, ScansGoIntoOneE57WithTheirPoses) {
   const fs::path file = folder_ / "all.e57";
   const testing::Said said = run({"--e57", file.string()});
@@ -112,6 +126,83 @@ TEST_F(ExportCommand, ScansGoIntoAFolderFileByFileAndE57IsCopied) {
   EXPECT_EQ(onto_itself.exit_code, 1);
   EXPECT_NE(onto_itself.err.find("would be overwritten"), std::string::npos) << onto_itself.err;
   EXPECT_EQ(testing::text_of_file(scans_ / "many.e57"), before);
+}
+
+TEST_F(ExportCommand, PtxHoldsTheScansInTheirOwnFramesAndThePoses) {
+  const fs::path file = folder_ / "all.ptx";
+  const testing::Said said = run({"--ptx", file.string()});
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  const auto scans = io::scans_of_file(file);
+  ASSERT_TRUE(scans);
+  ASSERT_EQ(scans->size(), 3U);
+  EXPECT_EQ(points_in(file, 1), points_of(12.0F).points);
+  EXPECT_LT((pose_in(file, 1) * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(5, 7, 7)).norm(), 1e-9);
+  // A second reader, from the format's description.
+  std::istringstream in(testing::text_of_file(file));
+  for (const float x : {10.0F, 12.0F, 1.0F}) {
+    std::size_t columns = 0, rows = 0;
+    ASSERT_TRUE(in >> columns >> rows);
+    EXPECT_EQ(columns * rows, 100U);
+    double skipped = 0;
+    for (int k = 0; k < 12; ++k) in >> skipped;
+    Eigen::Matrix4d m;
+    for (int k = 0; k < 16; ++k) in >> m(k / 4, k % 4);
+    EXPECT_EQ(Eigen::Vector4d(m.col(3)), Eigen::Vector4d(0, 0, 0, 1)) << "vectors are rows: the translation lies below";
+    for (int i = 0; i < 100; ++i) {
+      Eigen::Vector3d p;
+      double intensity = -1;
+      ASSERT_TRUE(in >> p.x() >> p.y() >> p.z() >> intensity);
+      EXPECT_EQ(p, Eigen::Vector3d(static_cast<double>(x), i, 0));
+      EXPECT_EQ(intensity, i);
+      if (x == 12.0F)
+        EXPECT_LT(((p.homogeneous().transpose() * m).head<3>() - Eigen::RowVector3d(5 - i, 6 + 12, 7)).norm(), 1e-9);
+    }
+  }
+}
+
+TEST_F(ExportCommand, AMergedCloudHasEveryPointWhereItBelongsAndItsSource) {
+  for (const char* name : {"all.ply", "all.pcd", "all.las"}) {
+    const fs::path file = folder_ / name;
+    const testing::Said said = run({"--merged", file.string()});
+    ASSERT_EQ(said.exit_code, 0) << said.err;
+    EXPECT_NE(said.err.find("300 points of 3 scans"), std::string::npos) << said.err;
+    auto reader = io::open_scan({file, 0, {}});
+    ASSERT_TRUE(reader) << reader.error().text();
+    PointChunk chunk;
+    ASSERT_TRUE((*reader)->read(chunk, 1000));
+    ASSERT_EQ(chunk.points.size(), 300U) << name;
+    ASSERT_EQ(chunk.intensity.size(), 300U) << name;
+    const Eigen::Vector3d origin = (*reader)->header().local_origin_in_scan;
+    const auto at = [&](std::size_t i) { return Eigen::Vector3d(chunk.points[i].cast<double>() + origin); };
+    EXPECT_LT((at(3) - Eigen::Vector3d(10, 3, 0)).norm(), 1e-4) << name;
+    EXPECT_LT((at(103) - Eigen::Vector3d(5 - 3, 6 + 12, 7)).norm(), 1e-4) << name;
+    EXPECT_LT((at(203) - Eigen::Vector3d(2, 5, 3)).norm(), 1e-4) << name;
+    EXPECT_EQ(chunk.intensity[103], 3) << name;
+  }
+  // Sources are the ids and one; they end each record of the PLY.
+  const std::string ply = testing::text_of_file(folder_ / "all.ply");
+  constexpr std::size_t kRecord = 24 + 4 + 2;
+  const std::size_t first = ply.find("end_header\n") + 11;
+  ASSERT_EQ(ply.size(), first + 300 * kRecord);
+  for (const auto& [point, source] : {std::pair(0U, 1), std::pair(150U, 3), std::pair(299U, 4)})
+    EXPECT_EQ(ply[first + point * kRecord + 28], source);
+  const std::string las = testing::text_of_file(folder_ / "all.las");
+  EXPECT_EQ(las[375 + 150 * 30 + 20], 3) << "the point source id";
+}
+
+TEST_F(ExportCommand, AVoxelKeepsItsFirstPoint) {
+  const fs::path file = folder_ / "thin.ply";
+  const testing::Said said = run({"--merged", file.string(), "--voxel", "10"});
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_NE(said.err.find(" points of 3 scans"), std::string::npos) << said.err;
+  const std::vector<Eigen::Vector3f> points = points_in(file, 0);
+  EXPECT_GT(points.size(), 20U);
+  EXPECT_LT(points.size(), 45U);
+  EXPECT_EQ(points[0], Eigen::Vector3f(10, 0, 0));
+  EXPECT_EQ(points[1], Eigen::Vector3f(10, 10, 0));
+  EXPECT_EQ(run({"--merged", (folder_ / "x.obj").string()}).exit_code, 2);
+  EXPECT_EQ(run({"--voxel", "1"}).exit_code, 2);
+  EXPECT_EQ(run({"--merged", (scans_ / "y.ply").string(), "--component", "1"}).exit_code, 1) << "a scan of the survey";
 }
 
 TEST_F(ExportCommand, WhatIsMissingIsNamed) {

@@ -20,6 +20,7 @@
 #include "pipelines/survey_pipeline.h"
 #include "pipelines/survey_record.h"
 #include "pipelines/survey_warnings.h"
+#include "pipelines/view_clouds.h"
 #include "report/write_outputs.h"
 #include "store/store.h"
 
@@ -67,9 +68,10 @@ std::vector<fs::path> folders_of_output(const Job& job) {
   return folders;
 }
 
-/// About what the results take on the disk: measured 14 kB and 1.6 kB a pair with 20 scans, temporary twins included.
+/// About what the results take on the disk: measured 14 kB and 1.6 kB a pair with 20 scans before the 3D view,
+/// temporary twins included; report.json takes 3 kB a pair.
 std::uint64_t bytes_of_results(std::size_t num_scans, const CandidateOptions& options) {
-  constexpr std::uint64_t kFixed = 150'000, kPerScan = 5'000, kPerPair = 3'000;
+  constexpr std::uint64_t kFixed = 150'000, kPerScan = 8'000, kPerPair = 6'000;
   const std::uint64_t all_pairs = static_cast<std::uint64_t>(num_scans) * (num_scans - 1) / 2;
   const std::uint64_t chosen =
       2 * static_cast<std::uint64_t>(num_scans) * static_cast<std::uint64_t>(options.pairs_per_scan);
@@ -192,9 +194,14 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
   Result<io::ScanListing> listing = scans_of_job(job);
   if (!listing) return tl::unexpected(listing.error());
   for (const std::string& note : listing->notes) events.info(note);
+  bool with_view = false;
   if (job.share.is_whole()) {
-    const Result<void> space = output->reserve(bytes_of_results(listing->scans.size(), job.settings.candidates));
+    const std::size_t num_scans = listing->scans.size();
+    const std::uint64_t bytes = bytes_of_results(num_scans, job.settings.candidates);
+    with_view = output->reserve(bytes + bytes_of_view(num_scans)).has_value();
+    const Result<void> space = with_view ? Result<void>() : output->reserve(bytes);
     if (!space) return tl::unexpected(space.error());
+    if (!with_view) events.info("there is no space for the view of the scans in the report: it will do without");
   }
 
   StoreTroubles troubles(events);
@@ -229,7 +236,9 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
               {"products_found", std::to_string(outcome.num_found)},
               {"peak_bytes_in_flight", std::to_string(outcome.peak_bytes_in_flight)}};
 
+  const std::map<int, ViewKeys> keys = view_keys(outcome);
   result.record = record_of(job, std::move(outcome));
+  if (with_view) add_view_clouds(keys, *store, result.record);
   complete_warnings(result.record, listing->warnings, events);
   result.end = end_of(result.record);
   run.input = text_of(job.inputs);

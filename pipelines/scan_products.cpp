@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "pipelines/code_versions.h"
+#include "pipelines/intensity_sampler.h"
 
 namespace isthmus::pipelines {
 namespace {
@@ -49,15 +50,17 @@ Result<T> load_or_make(const store::Store& store, const store::Key& key, const s
   return made;
 }
 
-Result<SampledScan> read_and_reduce(const ScanPlan& plan, const SamplingOptions& options) {
+Result<SampledScan> read_and_reduce(const ScanPlan& plan, const SamplingOptions& options, const store::Store& store) {
   Result<std::unique_ptr<io::ScanReader>> reader = io::open_scan(plan.ref);
   if (!reader) return tl::unexpected(reader.error());
   VoxelSampler sampler((*reader)->header(), plan.voxel_m, options);
+  IntensitySampler intensities(plan.voxel_m);
   PointChunk chunk;
   for (;;) {
     if (Result<void> done = (*reader)->read(chunk, kChunkPoints); !done) return tl::unexpected(done.error());
     if (chunk.points.empty()) break;
     sampler.add(chunk);
+    intensities.add(chunk);
   }
   // What is read now would be kept as what the content of then was reduced to.
   const Result<store::FileIdentity> identity = store::identity_of(plan.ref.path);
@@ -68,6 +71,7 @@ Result<SampledScan> read_and_reduce(const ScanPlan& plan, const SamplingOptions&
   Result<SampledScan> sampled = sampler.finish();
   if (!sampled && sampled.error().where.empty()) sampled.error().where = plan.ref.name;
   if (sampled) {
+    store.keep(plan.intensity, intensities.of(*sampled));
     const std::vector<std::string>& read_notes = (*reader)->header().notes;
     sampled->notes.insert(sampled->notes.begin(), read_notes.begin(), read_notes.end());
   }
@@ -129,6 +133,7 @@ ScanPlan make_plan(int id, const io::ScanRef& ref, const std::string& content_di
   };
   plan.sampled = key("sampled", kSampledVersion,
                      {content_digest, fmt::format("{}", ref.index), fmt::format("{}", voxel_m), settings.sampling});
+  plan.intensity = key("intensity", kSampledVersion, {plan.sampled.digest});
   plan.features = key("features", kFeaturesVersion, {plan.sampled.digest, settings.features});
   plan.regions = key("regions", kRegionsVersion, {plan.features.digest, settings.regions});
   plan.summary = key("summary", kSummaryVersion, {plan.regions.digest});
@@ -163,7 +168,7 @@ ScanSummary summarise(const ScanProduct& product) {
 
 Result<SampledScan> ProductMaker::sampled(const ScanPlan& plan, std::vector<StageTime>& times) const {
   return load_or_make<SampledScan>(store_, plan.sampled, plan.ref.name, times,
-                                   [&] { return read_and_reduce(plan, settings_.sampling); });
+                                   [&] { return read_and_reduce(plan, settings_.sampling, store_); });
 }
 
 Result<FeatureCloud> ProductMaker::features(const ScanPlan& plan, const SampledScan& sampled,

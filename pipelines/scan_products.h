@@ -28,6 +28,7 @@ struct ScanPlan {
   store::FileIdentity identity{};  ///< of the file when its content was looked at
   std::size_t bytes = 0;           ///< estimate of the memory that making its products needs
   store::Key sampled, features, regions, summary;
+  store::Key intensity;  ///< of the finest sampling's points, for pictures; made with the sampling
 };
 
 /// The error with the scan's name wherever its path stood: the same words wherever the folder lies.

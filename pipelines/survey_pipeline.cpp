@@ -409,7 +409,7 @@ SurveyOutcome run_survey(const std::vector<io::ListedScan>& scans, const Setting
                          const Events& events, const std::atomic<bool>& stop, const Share& share) {
   SurveyOutcome out;
   for (std::size_t i = 0; i < scans.size(); ++i) {
-    out.scans.push_back({static_cast<int>(i), scans[i].scan, std::nullopt, std::nullopt, {}, false});
+    out.scans.push_back({static_cast<int>(i), scans[i].scan, std::nullopt, std::nullopt, {}, false, {}, {}});
   }
   const auto threads = static_cast<std::size_t>(threads_of(settings.run));
   const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);
@@ -423,6 +423,11 @@ SurveyOutcome run_survey(const std::vector<io::ListedScan>& scans, const Setting
       events.warn(failed.error.text());
     }
     for (const int id : plan.unseen) out.scans[static_cast<std::size_t>(id)].missing = true;
+    for (const ScanPlan& scan : plan.scans) {
+      ScanOutcome& outcome = out.scans[static_cast<std::size_t>(scan.id)];
+      outcome.sampled = scan.sampled;
+      outcome.intensity = scan.intensity;
+    }
     if (plan.scans.empty() || stop) return;
     SurveyGraph graph(plan, settings, store, events, stop, share, out);
     graph.run();

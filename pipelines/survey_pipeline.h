@@ -28,6 +28,7 @@ struct ScanOutcome {
   std::optional<Error> error;
   std::vector<StageTime> times;
   bool missing = false;  ///< another share's, and not in the store
+  store::Key sampled, intensity;  ///< where these products lie in the store; empty if the scan was not planned
 };
 
 struct PairOutcome {

@@ -9,8 +9,10 @@ packages=(
   libpcl-dev libeigen3-dev libtbb-dev libceres-dev libembree-dev libopenmpi-dev
   libyaml-cpp-dev libcli11-dev libfmt-dev libexpected-dev libxxhash-dev nlohmann-json3-dev libpugixml-dev
   libgtest-dev libbenchmark-dev
+  # the 3D view of the report, and a browser to test the page in
+  nodejs npm chromium
   # plots and the checks of results
-  python3 python3-numpy python3-scipy python3-matplotlib
+  python3 python3-numpy python3-scipy python3-matplotlib python3-open3d
   # a Slurm of two nodes on this machine, for the test of isthmus submit
   slurm-wlm munge
 )

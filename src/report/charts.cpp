@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "report/html_text.h"
+#include "report/loop_closures.h"
 #include "survey/candidates.h"
 
 namespace isthmus::report {
@@ -147,6 +148,19 @@ VerdictBins residual_bins(const SurveyRecord& record) {
   return binned(record, [&](const PairResult& r) { return r.rms_m / voxel; });
 }
 
+VerdictBins loop_bins(const SurveyRecord& record) {
+  const double voxel = record.voxel_m > 0 ? record.voxel_m : 1.0;
+  const LoopClosures loops(record);
+  VerdictBins bars;
+  for (const SolvedLink& l : record.solution.links) {
+    const std::optional<LoopClosure> loop = loops.of(l.link);
+    if (!loop || l.link.result.verdict == Verdict::failed) continue;
+    const double bin = std::min(std::floor(kNumBins * loop->translation_m / voxel), kNumBins - 1.0);
+    ++bars.counts[static_cast<std::size_t>(bin)][stack_of(l.link.result.verdict)];
+  }
+  return bars;
+}
+
 std::string overlap_histogram(const SurveyRecord& record) {
   return bar_chart(overlap_bins(record), {"0 %", "50 %", "100 %"},
                    "Overlap of the tried pairs (the smaller of both directions)");
@@ -156,6 +170,12 @@ std::string residual_histogram(const SurveyRecord& record) {
   const double voxel = record.voxel_m > 0 ? record.voxel_m : 1.0;
   return bar_chart(residual_bins(record), {"0", metres(0.5 * voxel), metres(voxel) + " = 1 voxel"},
                    "Residual over the overlap (point to plane, rms)");
+}
+
+std::string loop_histogram(const SurveyRecord& record) {
+  const double voxel = record.voxel_m > 0 ? record.voxel_m : 1.0;
+  return bar_chart(loop_bins(record), {"0", metres(0.5 * voxel), "over " + metres(0.9 * voxel)},
+                   "Error of the shortest loop of other links through each link");
 }
 
 Seconds seconds_by_stage(const SurveyRecord& record) {

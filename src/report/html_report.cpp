@@ -13,6 +13,7 @@
 #include "report/plan_map.h"
 #include "report/run_json.h"
 #include "report/verdict_words.h"
+#include "report/view_section.h"
 
 namespace isthmus::report {
 namespace {
@@ -64,7 +65,7 @@ std::string pairs_section(const SurveyRecord& record) {
          "<i class=\"swatch square failed\"></i>failed</span><span class=\"keys\">above: <i class=\"swatch square "
          "overlap\"></i>overlap"
          "</span></div></div><div class=\"card\">" +
-         overlap_histogram(record) + residual_histogram(record) + "</div></div>";
+         overlap_histogram(record) + residual_histogram(record) + loop_histogram(record) + "</div></div>";
 }
 
 std::string links_section(const SurveyRecord& record, const SurveyCounts& c) {
@@ -130,10 +131,11 @@ std::string html_report(const SurveyRecord& record) {
   page += tiles(record, c);
   const std::string missing = missing_section(record);
   if (!missing.empty()) page += "<h2>Not joined</h2>" + missing;
-  page += maps(record) + pairs_section(record) + links_section(record, c);
+  page += maps(record) + view_section(record) + pairs_section(record) + links_section(record, c);
   page += "<h2>Scans</h2><div class=\"scroll\">" + scan_table(record) + "</div>";
   page += warnings_section(record) + run_section(record);
-  page += fmt::format("</main><script>{}</script></body></html>\n", kPageScript);
+  page += fmt::format("</main><script>{}</script>", kPageScript);
+  page += view_script(record) + "</body></html>\n";
   return page;
 }
 

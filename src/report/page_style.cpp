@@ -7,18 +7,18 @@ const char* const kPageStyle = R"css(
   color-scheme: light dark;
   --paper: #f6f4ef; --card: #ffffff; --ink: #1d2429; --quiet: #66727a; --rule: #dcd8ce; --land: #c9b27c; --sea: #e8eef0;
   --c0: #0b6e69; --c1: #3f9c86; --c2: #93b453; --c3: #e0a02f; --c4: #d1563f;
-  --accepted: #0b6e69; --ambiguous: #e0a02f; --rejected: #b9bfc2; --failed: #c63d4f; --accent: #0b6e69; --pick: #b0308f; --mark: #f9e8f4;
+  --accepted: #0b6e69; --ambiguous: #e0a02f; --rejected: #b9bfc2; --failed: #c63d4f; --accent: #0b6e69; --pick: #b0308f; --mark: #f9e8f4; --pair-a: #d2622a; --pair-b: #2272b4;
 }
 @media (prefers-color-scheme: dark) {
   :root {
     --paper: #12181b; --card: #1a2226; --ink: #e6eaeb; --quiet: #93a1a8; --rule: #2d383d; --land: #b99e5e; --sea: #162024;
     --c0: #35c2b4; --c1: #6fd09a; --c2: #b9d262; --c3: #f0b64a; --c4: #f07a5f;
-    --accepted: #35c2b4; --ambiguous: #f0b64a; --rejected: #4c585e; --failed: #f0697b; --accent: #35c2b4; --pick: #f27fd0; --mark: #3a2335;
+    --accepted: #35c2b4; --ambiguous: #f0b64a; --rejected: #4c585e; --failed: #f0697b; --accent: #35c2b4; --pick: #f27fd0; --mark: #3a2335; --pair-a: #f0935c; --pair-b: #67b1ec;
   }
 }
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--paper); color: var(--ink); font: 15px/1.5 system-ui, "Segoe UI", "DejaVu Sans", sans-serif; }
-main { max-width: 1180px; margin: 0 auto; padding: 28px 24px 64px; }
+main { max-width: 1360px; margin: 0 auto; padding: 28px 24px 64px; }
 header { display: flex; align-items: baseline; gap: 14px; color: var(--quiet); border-bottom: 1px solid var(--rule); padding-bottom: 10px; }
 header b { color: var(--ink); letter-spacing: .02em; } header span:last-child { margin-left: auto; }
 h1 { font-size: 34px; line-height: 1.15; font-weight: 650; margin: 28px 0 8px; letter-spacing: -.01em; text-wrap: balance; }
@@ -56,6 +56,14 @@ svg { display: block; width: 100%; height: auto; } svg text { font: 11px system-
 .station .ring { fill: none; stroke: var(--ink); stroke-width: 1.2; } .station { cursor: pointer; }
 .station:hover .dot { fill: var(--accent); } .plan .label { pointer-events: none; fill: var(--ink); font-size: 12px; paint-order: stroke; stroke: var(--sea);
   stroke-width: 3px; stroke-linejoin: round; } .plan .many .label { font-size: 9.5px; }
+#view canvas { display: block; width: 100%; height: 600px; border-radius: 8px; background: var(--sea); cursor: grab; touch-action: none; }
+#view.off canvas, #view.off .view-bar { display: none; } .view-bar { display: flex; flex-wrap: wrap; gap: 8px 18px; align-items: center; margin-bottom: 12px;
+  font-size: 13px; color: var(--quiet); } .view-bar select, .view-bar button { font: inherit; color: var(--ink); background: var(--card);
+  border: 1px solid var(--rule); border-radius: 99px; padding: 3px 12px; cursor: pointer; } .view-bar button:first-of-type { margin-left: auto; }
+.view-bar input[type=range] { width: 110px; vertical-align: middle; accent-color: var(--accent); } .view-legend { margin: 10px 0 0; min-height: 1.6em; }
+.view-legend i { display: inline-block; width: 12px; height: 12px; border-radius: 50%; margin: 0 5px 0 10px; vertical-align: -1px; }
+.view-legend i:first-child { margin-left: 0; } .view-legend i.ramp { width: 90px; border-radius: 6px;
+  background: linear-gradient(90deg, #440154, #3b528b, #21918c, #5ec962, #fde725); }
 .scale path { stroke: var(--quiet); fill: none; stroke-width: 1.5; }
 .legend { display: flex; flex-wrap: wrap; gap: 6px 22px; align-items: center; font-size: 13px; color: var(--quiet); margin-top: 12px; }
 .legend .keys { display: inline-flex; flex-wrap: wrap; align-items: center; gap: 4px 7px; } .legend label { margin-left: 6px; cursor: pointer; }
@@ -72,7 +80,7 @@ svg.key { width: 34px; height: 10px; margin-left: 8px; } svg.key.round { width: 
 .matrix .row { text-anchor: end; } .bars .accepted { fill: var(--accepted); } .bars text { text-anchor: middle; } .bars .t0 { text-anchor: start; } .bars .t2 { text-anchor: end; }
 .bars .axis { stroke: var(--rule); } figure { margin: 0 0 14px; } figcaption { margin-top: 4px; }
 .scroll { overflow: auto; max-height: 560px; border: 1px solid var(--rule); border-radius: 10px; background: var(--card); }
-table { border-collapse: collapse; width: 100%; font-size: 13.5px; } td, th { padding: 5px 12px; text-align: left; vertical-align: top; white-space: nowrap; }
+table { border-collapse: collapse; width: 100%; font-size: 13.5px; } td, th { padding: 5px 9px; text-align: left; vertical-align: top; white-space: nowrap; }
 .sortable th { position: sticky; top: 0; background: var(--card); box-shadow: inset 0 -1px var(--rule); cursor: pointer; font-weight: 600; z-index: 1; }
 .sortable th:hover { color: var(--accent); } th.up::after { content: " ↑"; } th.down::after { content: " ↓"; }
 tbody tr + tr td { border-top: 1px solid var(--rule); } .sortable tbody tr { cursor: pointer; } .sortable tbody tr:hover { background: var(--sea); }
@@ -92,7 +100,7 @@ ul.missing { list-style: none; padding: 0; margin: 0; } .missing li { background
 pre { overflow: auto; background: var(--card); border: 1px solid var(--rule); border-radius: 8px; padding: 12px 16px; font-size: 12.5px; max-height: 480px; }
 .facts { width: auto; } .facts th { color: var(--quiet); font-weight: 500; } .facts td { white-space: normal; word-break: break-all; }
 .times th { font-weight: 500; width: 1%; } .times td.n { width: 1%; } .times .bar i { display: block; height: 9px; margin-top: 6px; border-radius: 5px; background: var(--accent); min-width: 2px; }
-@media print { .filters, .switch { display: none; } .scroll { max-height: none; overflow: visible; border: 0; } body { background: #fff; font-size: 11px; }
+@media print { .filters, .switch, .view-bar { display: none; } .scroll { max-height: none; overflow: visible; border: 0; } body { background: #fff; font-size: 11px; }
   main { max-width: none; padding: 0; } .card, figure, li, tr { break-inside: avoid; } h2 { break-after: avoid; } details { display: none; }
   table { font-size: 9px; } td, th { padding: 2px 5px; } td.why { min-width: 0; } }
 )css";

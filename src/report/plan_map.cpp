@@ -32,11 +32,6 @@ struct Spot {
   double radius_px = 0;
 };
 
-Eigen::Vector3d station_in_component(const SurveyRecord& record, const ScanRecord& scan) {
-  const Eigen::Vector3d& p = scan.station_kind == StationKind::unknown ? scan.centre : scan.station;
-  return record.solution.find(scan.id)->component_from_local * p;
-}
-
 /// Rows: the map's right and up in the component's frame.
 Eigen::Matrix<double, 2, 3> view_of(const std::vector<Eigen::Vector3d>& points) {
   Eigen::Matrix<double, 2, 3> from_above;
@@ -225,6 +220,19 @@ void draw_scale(std::string& svg, const Layout& layout, const Sheet& sheet) {
 }
 
 }  // namespace
+
+Eigen::Vector3d station_in_component(const SurveyRecord& record, const ScanRecord& scan) {
+  const Eigen::Vector3d& p = scan.station_kind == StationKind::unknown ? scan.centre : scan.station;
+  return record.solution.find(scan.id)->component_from_local * p;
+}
+
+Eigen::Vector3d up_of_plan(const SurveyRecord& record, int component) {
+  std::vector<Eigen::Vector3d> stations;
+  for (const int id : record.solution.components[component].scans)
+    stations.push_back(station_in_component(record, *find_scan(record, id)));
+  const Eigen::Matrix<double, 2, 3> view = view_of(stations);
+  return Eigen::Vector3d(view.row(0)).cross(Eigen::Vector3d(view.row(1))).normalized();
+}
 
 std::string plan_map_svg(const SurveyRecord& record, int component, bool large) {
   const Component& part = record.solution.components[component];

@@ -12,6 +12,10 @@ namespace isthmus::report {
 /// lesser components.
 std::string plan_map_svg(const SurveyRecord& record, int component, bool large);
 
+/// Where the map puts a placed scan, and which way is up on it (out of the sheet), in the component's frame.
+Eigen::Vector3d station_in_component(const SurveyRecord& record, const ScanRecord& scan);
+Eigen::Vector3d up_of_plan(const SurveyRecord& record, int component);
+
 /// Legend and switches that belong to all maps.
 std::string plan_map_legend();
 

@@ -149,6 +149,7 @@ std::string report_json(const SurveyRecord& record) {
   for (const SolvedLink& l : record.solution.links) json["links"].push_back(link_json(record, l, loops));
   json["histograms"]["overlap"] = bins_json(overlap_bins(record), 1.0 / kNumBins);
   json["histograms"]["rms_m"] = bins_json(residual_bins(record), record.voxel_m / kNumBins);
+  json["histograms"]["loop_error_m"] = bins_json(loop_bins(record), record.voxel_m / kNumBins);
   json["warnings"] = warnings_json(record);
   json["settings"] = record.settings_yaml;
   json["versions"] = versions_json(record);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "report/view_cloud.h"
 #include "scan/sampled_scan.h"
 #include "survey/pose_graph.h"
 
@@ -39,6 +40,7 @@ struct ScanRecord {
   Eigen::Vector3d local_origin_in_scan = Eigen::Vector3d::Zero();
   std::vector<std::string> notes;
   Seconds seconds;
+  ViewCloud view;  ///< for the 3D view; may be empty
 };
 
 /// What differs from run to run: never in a deterministic output.

@@ -4,6 +4,7 @@
 #include "end_to_end/survey_on_disk.h"
 #include "io/scan_reader.h"
 #include "io/scan_writer.h"
+#include "report/view_script.h"
 
 namespace isthmus::testing {
 namespace {
@@ -22,6 +23,21 @@ TEST_F(Register, places_all_scans_of_a_small_office_and_writes_every_file) {
   EXPECT_EQ(evaluation.poses->within, 3);
   EXPECT_EQ(run_json(out_)["run"]["exit_code"], 0);
   EXPECT_NE(said.out.find("3 of 3 scans"), std::string::npos) << said.out;
+  const auto json = nlohmann::json::parse(text_of_file(out_ / "report.json"));
+  EXPECT_EQ(json["counts"]["placed"], 3);
+  EXPECT_GT(json["links"].at(0)["share_under_20mm"], 0.1);
+  const std::string page = text_of_file(out_ / "report.html");
+  if (report::kViewScript[0] == '\0') return;  // built without npm
+  const std::string begin = "id=\"view-data\">";
+  const std::size_t at = page.find(begin);
+  ASSERT_NE(at, std::string::npos);
+  const std::size_t from = at + begin.size();
+  const auto view = nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
+  ASSERT_EQ(view["stations"].size(), 3U);
+  for (const auto& station : view["stations"]) {
+    EXPECT_GT(station["points"], 5000);
+    EXPECT_TRUE(station["intensity"]) << "simulated scans have intensities";
+  }
 }
 
 TEST_F(Register, goes_on_without_an_unreadable_scan_and_says_so) {

@@ -1,0 +1,60 @@
+# isthmus_report_view(VARIABLE): the source file with the script of the report's 3D view. With npm it is bundled from
+# tools/report_view, in the build folder; without, or when its packages cannot be had, it is empty, and that is said.
+option(ISTHMUS_REPORT_VIEW "Give report.html its 3D view (needs npm)" ON)
+
+# Installs what package-lock.json names into FOLDER, once per lock file. Sets VARIABLE to an empty text or what is wrong.
+function(isthmus_install_view_packages folder variable)
+  set(${variable} "" PARENT_SCOPE)
+  set(source ${CMAKE_SOURCE_DIR}/tools/report_view)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source}/package-lock.json)
+  file(SHA256 ${source}/package-lock.json wanted)
+  set(stamp ${folder}/installed.txt)
+  if(EXISTS ${stamp})
+    file(READ ${stamp} installed)
+    if(installed STREQUAL wanted)
+      return()
+    endif()
+  endif()
+  file(COPY ${source}/package.json ${source}/package-lock.json DESTINATION ${folder})
+  execute_process(COMMAND ${ISTHMUS_NPM} ci --ignore-scripts --no-audit --no-fund --prefer-offline --fetch-retries=1
+    WORKING_DIRECTORY ${folder} RESULT_VARIABLE failed OUTPUT_QUIET ERROR_VARIABLE errors TIMEOUT 180)
+  if(failed)
+    string(REGEX REPLACE "\n.*" "" errors "${errors}")
+    set(${variable} "npm ci failed in tools/report_view: ${errors}" PARENT_SCOPE)
+    return()
+  endif()
+  file(WRITE ${stamp} ${wanted})
+endfunction()
+
+function(isthmus_report_view variable)
+  find_program(ISTHMUS_NPM npm)
+  find_program(ISTHMUS_NODE node)
+  set(folder ${CMAKE_BINARY_DIR}/report_view)
+  set(problem "")
+  if(NOT ISTHMUS_REPORT_VIEW)
+    set(problem "ISTHMUS_REPORT_VIEW is off")
+  elseif(NOT ISTHMUS_NPM OR NOT ISTHMUS_NODE)
+    set(problem "npm is not installed")
+  else()
+    isthmus_install_view_packages(${folder} problem)
+  endif()
+  if(problem)
+    message(STATUS "report.html will have no 3D view: ${problem}")
+    set(${variable} no_view_script.cpp PARENT_SCOPE)
+    set(ISTHMUS_VIEW_FOLDER "" CACHE INTERNAL "where the view is bundled; empty without")
+    return()
+  endif()
+  message(STATUS "report.html will have a 3D view")
+  set(source ${CMAKE_SOURCE_DIR}/tools/report_view)
+  set(sources ${source}/build.mjs ${source}/src/view.js ${source}/src/clouds.js)
+  set(script ${CMAKE_BINARY_DIR}/generated/report/view_script.cpp)
+  file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/generated/report)
+  add_custom_command(OUTPUT ${script}
+    COMMAND ${CMAKE_COMMAND} -E copy_directory ${source}/src ${folder}/src
+    COMMAND ${CMAKE_COMMAND} -E copy_if_different ${source}/build.mjs ${folder}/build.mjs
+    COMMAND ${ISTHMUS_NODE} ${folder}/build.mjs ${script}
+    DEPENDS ${sources} ${source}/package-lock.json
+    COMMENT "Bundling the report's 3D view" VERBATIM)
+  set(${variable} ${script} PARENT_SCOPE)
+  set(ISTHMUS_VIEW_FOLDER ${folder} CACHE INTERNAL "where the view is bundled; empty without")
+endfunction()

@@ -11,10 +11,12 @@
 #include <ctime>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "base/atomic_file.h"
 #include "io/format_table.h"
 #include "io/scan_directory.h"
+#include "pipelines/night.h"
 #include "pipelines/output_folder.h"
 #include "pipelines/planning.h"
 #include "pipelines/survey_pipeline.h"
@@ -169,6 +171,24 @@ std::shared_ptr<store::Journal> open_journal(const Job& job, const std::string& 
   return std::move(*journal);
 }
 
+/// The events, and their progress in the journal for those who watch; what is told twice stands there once.
+Events with_journal(const Events& events, const std::shared_ptr<store::Journal>& journal) {
+  if (!journal) return events;
+  struct Last {
+    std::mutex mutex;
+    std::string text;
+  };
+  Events out = events;
+  out.progress = [progress = events.progress, journal, last = std::make_shared<Last>()](
+                     const std::string& stage, std::size_t done, std::size_t total) {
+    if (progress) progress(stage, done, total);
+    const store::JournalLine line = progress_line(stage, done, total);
+    const std::lock_guard lock(last->mutex);
+    if (std::exchange(last->text, line.stage + line.item) != line.stage + line.item) journal->write(line);
+  };
+  return out;
+}
+
 void note(const std::shared_ptr<store::Journal>& journal, const std::string& event, const std::string& text) {
   if (journal) journal->write({0, event, "", "", text, 0});
 }
@@ -218,7 +238,7 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
   for (const std::string& warning : listing->warnings) events.warn(warning);
 
   JobResult result;
-  SurveyOutcome outcome = run_share(listing->scans, job, *store, events, stop);
+  SurveyOutcome outcome = run_share(listing->scans, job, *store, with_journal(events, journal), stop);
   result.num_made = outcome.num_made;
   result.num_found = outcome.num_found;
   if (outcome.stopped) {

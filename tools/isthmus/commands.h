@@ -17,5 +17,6 @@ void add_clean(CLI::App& app, int& exit_code);
 void add_plan(CLI::App& app, int& exit_code);
 void add_submit(CLI::App& app, int& exit_code);
 void add_status(CLI::App& app, int& exit_code);
+void add_watch(CLI::App& app, int& exit_code);
 
 }  // namespace isthmus::cli

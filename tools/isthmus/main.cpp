@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
   isthmus::cli::add_simulate(app, exit_code);
   isthmus::cli::add_evaluate(app, exit_code);
   isthmus::cli::add_export(app, exit_code);
+  isthmus::cli::add_watch(app, exit_code);
   isthmus::cli::add_config(app, exit_code);
   isthmus::cli::add_clean(app, exit_code);
   isthmus::cli::add_plan(app, exit_code);

@@ -9,6 +9,7 @@
 #include "features/axes.h"
 #include "features/fpfh.h"
 #include "features/iss.h"
+#include "features/upright.h"
 #include "geometry/point_grid.h"
 
 namespace isthmus {
@@ -127,29 +128,6 @@ void append_normalised(FeatureCloud& cloud, std::span<const float> small, std::s
   }
 }
 
-// Of the axes of a building, which is the vertical? Floor and ceiling lie nearer to the scanner than most walls, so the
-// axis with the nearest planes goes first; one that is much weaker than the strongest stays behind.
-void put_upright_first(const SampledScan& scan, std::vector<DominantAxis>& axes) {
-  constexpr float kComparable = 0.7f, kParallel = 0.99f;
-  std::vector<std::pair<float, DominantAxis>> ranked;
-  const float strongest = axes.empty() ? 0.0f : axes.front().weight;
-  for (const DominantAxis& axis : axes) {
-    std::vector<float> offsets;
-    for (std::size_t i = 0; i < scan.points.size(); ++i)
-      if (std::abs(scan.normals[i].dot(axis.direction)) > kParallel)
-        offsets.push_back(std::abs((scan.points[i] - scan.station).dot(axis.direction)));
-    float median = std::numeric_limits<float>::infinity();
-    if (!offsets.empty() && axis.weight >= kComparable * strongest) {
-      std::nth_element(offsets.begin(), offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2),
-                       offsets.end());
-      median = offsets[offsets.size() / 2];
-    }
-    ranked.emplace_back(median, axis);
-  }
-  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (std::size_t k = 0; k < axes.size(); ++k) axes[k] = ranked[k].second;
-}
-
 }  // namespace
 
 FeatureCloud describe(const SampledScan& scan, const FeatureOptions& options) {
@@ -186,7 +164,7 @@ FeatureCloud describe(const SampledScan& scan, const FeatureOptions& options) {
                           static_cast<float>(options.large_radius_voxels) * voxel);
   append_normalised(cloud, small, large);
   cloud.axes = dominant_axes(scan.normals, scan.variation, kMaxAxes);
-  if (scan.station_kind != StationKind::unknown) put_upright_first(scan, cloud.axes);
+  put_upright_first(scan, cloud.axes);
   return cloud;
 }
 

@@ -10,13 +10,14 @@ namespace isthmus {
 /// A direction along which a scan is organised: the vertical of a levelled scan, the axes of a building.
 struct DominantAxis {
   Eigen::Vector3f direction = Eigen::Vector3f::Zero();  ///< unit; sign: most points' normals along it agree
-  float weight = 0;     ///< share of points whose normals are parallel or perpendicular to it
-  float sigma_rad = 0;  ///< uncertainty of the direction
-  float sign_agreement =
-      0;  ///< 1: all normals along it point the same way (open ground), 0: as many each way (floor and ceiling)
+  float weight = 0;          ///< share of points whose normals are parallel or perpendicular to it
+  float sigma_rad = 0;       ///< uncertainty of the direction
+  float sign_agreement = 0;  ///< 1: all normals along it point the same way (open ground), 0: as many each way (floor
+                             ///< and ceiling); 1 also where the station says which end is up
+  bool upright = false;  ///< the instrument's vertical, by what its station could not see (features/upright.h)
   template <class F>
   void fields(F&& f) {
-    f(direction), f(weight), f(sigma_rad), f(sign_agreement);
+    f(direction), f(weight), f(sigma_rad), f(sign_agreement), f(upright);
   }
 };
 

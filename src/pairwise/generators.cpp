@@ -10,28 +10,12 @@
 namespace isthmus {
 namespace {
 
-// The strongest axis of one scan may be any axis of the other; a sign that the normals leave open is tried both ways.
-// The most likely pairs first.
-std::vector<std::pair<Eigen::Vector3f, Eigen::Vector3f>> common_axes(const GeneratorContext& c) {
-  constexpr float kSureSign = 0.9f;
-  std::vector<std::pair<Eigen::Vector3f, Eigen::Vector3f>> out;
-  const auto &from = c.source.features.axes, &to = c.target.features.axes;
-  for (std::size_t a = 0; a < from.size(); ++a)
-    for (std::size_t b = 0; b < to.size(); ++b) {
-      if (a > 0 && b > 0) continue;
-      out.emplace_back(from[a].direction, to[b].direction);
-      if (std::min(from[a].sign_agreement, to[b].sign_agreement) < kSureSign)
-        out.emplace_back(from[a].direction, -to[b].direction);
-    }
-  return out;
-}
-
 std::vector<Seed> axis_votes(const GeneratorContext& c) {
   VoteOptions options;
   options.matches_per_keypoint = static_cast<std::uint32_t>(c.options.matches_per_keypoint);
   options.window_voxels = static_cast<float>(c.options.vote_window_voxels);
   std::vector<Seed> seeds;
-  for (const auto& [from, to] : common_axes(c)) {
+  for (const auto& [from, to] : common_axes(c.source.features.axes, c.target.features.axes)) {
     const auto more = vote_seeds_about_axis(c.source, c.target, c.matches, from, to, options);
     seeds.insert(seeds.end(), more.begin(), more.end());
   }
@@ -40,7 +24,7 @@ std::vector<Seed> axis_votes(const GeneratorContext& c) {
 
 std::vector<Seed> column_votes(const GeneratorContext& c) {
   constexpr std::size_t kMaxAxisPairs = 3;
-  auto axes = common_axes(c);
+  auto axes = common_axes(c.source.features.axes, c.target.features.axes);
   if (axes.size() > kMaxAxisPairs) axes.resize(kMaxAxisPairs);
   std::vector<Seed> seeds;
   for (const auto& [from, to] : axes) {
@@ -55,6 +39,21 @@ std::vector<Seed> pair_votes(const GeneratorContext& c) {
 }
 
 }  // namespace
+
+std::vector<std::pair<Eigen::Vector3f, Eigen::Vector3f>> common_axes(std::span<const DominantAxis> from,
+                                                                     std::span<const DominantAxis> to) {
+  constexpr float kSureSign = 0.9f;
+  std::vector<std::pair<Eigen::Vector3f, Eigen::Vector3f>> out;
+  const bool uprights = !from.empty() && !to.empty() && from.front().upright && to.front().upright;
+  for (std::size_t a = 0; a < (uprights ? 1 : from.size()); ++a)
+    for (std::size_t b = 0; b < (uprights ? 1 : to.size()); ++b) {
+      if (a > 0 && b > 0) continue;
+      out.emplace_back(from[a].direction, to[b].direction);
+      if (std::min(from[a].sign_agreement, to[b].sign_agreement) < kSureSign)
+        out.emplace_back(from[a].direction, -to[b].direction);
+    }
+  return out;
+}
 
 std::span<const Generator> generators() {
   static const std::array<Generator, 3> table{

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace isthmus {
 
@@ -42,6 +43,18 @@ double probability_of(const PairEvidence& e) {
   const double p = 1 / (1 + std::exp(-logit));
   if (vetoed(e)) return std::min(p, kVetoedProbability);
   return slides(e) ? std::min(p, kSlidingProbability) : p;
+}
+
+bool forbidden_by_free_space(const PairResult& result) {
+  const auto term = [&](std::string_view name) {
+    const auto at =
+        std::ranges::find(result.evidence, name, [](const auto& named) { return std::string_view(named.first); });
+    return at == result.evidence.end() ? 0.0 : at->second;
+  };
+  PairEvidence evidence;
+  evidence.contradiction = term("contradiction");
+  evidence.support = term("support");
+  return vetoed(evidence);
 }
 
 void judge(const PairEvidence& e, const PairOptions& options, PairResult& result) {

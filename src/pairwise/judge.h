@@ -30,6 +30,10 @@ struct PairEvidence {
 /// the sets it was fitted on and the sets it was checked on.
 double probability_of(const PairEvidence& evidence);
 
+/// Whether free space forbids the pose: too much of a scan stands where the other station saw through. No support, and
+/// no other link that agrees, outweighs it: rooms that repeat agree with each other. False where nothing was measured.
+bool forbidden_by_free_space(const PairResult& result);
+
 /// Verdict, probability and reason of `result`, from its evidence.
 void judge(const PairEvidence& evidence, const PairOptions& options, PairResult& result);
 

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "pairwise/judge.h"
+
 namespace isthmus::survey {
 namespace {
 
@@ -109,7 +111,7 @@ MeasurementOrReason measurement_of(const Link& link, const GraphScan& source, co
   Measurement m;
   m.log_odds = link.guided ? 0.0 : clipped_log_odds(r.probability);
   m.accepted = r.verdict == Verdict::accepted;
-  m.votes = !link.guided;
+  m.votes = !link.guided && !forbidden_by_free_space(r);
   m.floor_m = noise.floor_m;
   m.floor_rad = noise.floor_rad;
   m.overlap = r.overlap;

@@ -31,6 +31,8 @@ struct Link {
   /// The hypothesis came from poses solved before (second round): that it agrees with them proves nothing, so it has no
   /// vote.
   bool guided = false;
+  /// Why the survey around it forbids the link, whatever the pair says; empty if nothing does. It is rejected.
+  std::string refuted;
 };
 
 struct PoseGraph {

@@ -93,6 +93,11 @@ Solver prepared(const PoseGraph& graph, const SolveOptions& options) {
   std::stable_sort(s.links.begin(), s.links.end(), link_less);
   for (std::size_t k = 0; k < s.links.size(); ++k) {
     PairResult& r = s.links[k].link.result;
+    if (!s.links[k].link.refuted.empty()) {
+      r.verdict = Verdict::rejected;
+      r.reason = s.links[k].link.refuted;
+      continue;
+    }
     if (r.verdict != Verdict::accepted && r.verdict != Verdict::ambiguous) continue;
     if (r.verdict == Verdict::ambiguous && !r.target_from_source) continue;
     const auto source = node_of_id.find(s.links[k].link.source), target = node_of_id.find(s.links[k].link.target);

@@ -234,6 +234,31 @@ TEST(Solve, TwoAmbiguousLinksThatAgreeJoinParts) {
   EXPECT_EQ(solve(world.graph, careful).components.size(), 2U);
 }
 
+TEST(Solve, RefutedLinksAreRejectedAndJoinNothing) {
+  World world(2);
+  world.right(0, 1).refuted = "the scans around it say no";
+  const Solution solution = solve(world.graph, {});
+  EXPECT_EQ(solution.components.size(), 2U);
+  EXPECT_EQ(find_link(solution, 0, 1)->link.result.verdict, Verdict::rejected);
+  EXPECT_EQ(find_link(solution, 0, 1)->measured, Verdict::accepted);
+  EXPECT_EQ(find_link(solution, 0, 1)->link.result.reason, "the scans around it say no");
+}
+
+// Equal rooms, a whole number of rooms apart: links that are wrong by the same shift agree, but the scans stand in each
+// other's seen-through space.
+TEST(Solve, LinksThatFreeSpaceForbidsConfirmNobody) {
+  World world(4);
+  world.right(0, 1), world.right(2, 3);
+  for (const auto& [i, j] : {std::pair{0, 2}, std::pair{1, 3}}) {
+    Link& link = world.right(i, j, 0.5, Verdict::ambiguous);
+    link.result.evidence = {{"support", 0.5}, {"contradiction", 0.06}};
+  }
+  EXPECT_EQ(solve(world.graph, {}).components.size(), 2U);
+  world.graph.links[2].result.evidence =
+      world.graph.links[3].result.evidence = {{"support", 0.5}, {"contradiction", 0.02}};
+  EXPECT_EQ(solve(world.graph, {}).components.size(), 1U);
+}
+
 TEST(Solve, TwoAmbiguousLinksThatDisagreeJoinNothing) {
   World world(4);
   world.right(0, 1), world.right(2, 3);

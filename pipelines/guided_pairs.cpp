@@ -44,6 +44,16 @@ std::vector<GuidedPair> best_of_each(std::vector<GuidedPair> pairs, int pairs_pe
 
 }  // namespace
 
+double predicted_overlap(const ScanSummary& source, const ScanSummary& target, const Transform& target_from_source) {
+  const double apart = (target_from_source * source.centre - target.centre).norm();
+  if (apart > extent_of(source) + extent_of(target)) return 0;
+  const float reach = kReachCells * std::max(source.outline_cell_m, target.outline_cell_m);
+  const PointGrid target_grid(target.outline, reach);
+  const PointGrid source_grid(source.outline, reach);
+  return std::min(covered(source, target_grid, reach, target_from_source),
+                  covered(target, source_grid, reach, target_from_source.inverse()));
+}
+
 std::vector<GuidedPair> propose_guided_pairs(const Solution& solution, std::span<const OutlinedScan> scans,
                                              int pairs_per_scan) {
   std::set<std::pair<int, int>> accepted;
@@ -59,13 +69,7 @@ std::vector<GuidedPair> propose_guided_pairs(const Solution& solution, std::span
       if (accepted.contains(std::minmax(scans[i].id, scans[j].id))) continue;
       const auto predicted = predicted_target_from_source(solution, scans[j].id, scans[i].id);
       if (!predicted) continue;
-      const double apart = (*predicted * source.centre - target.centre).norm();
-      if (apart > extent_of(source) + extent_of(target)) continue;
-      const float reach = kReachCells * std::max(source.outline_cell_m, target.outline_cell_m);
-      const PointGrid target_grid(target.outline, reach);
-      const PointGrid source_grid(source.outline, reach);
-      const double overlap = std::min(covered(source, target_grid, reach, *predicted),
-                                      covered(target, source_grid, reach, predicted->inverse()));
+      const double overlap = predicted_overlap(source, target, *predicted);
       if (overlap >= kLeastPredictedOverlap) of_target[i].push_back({scans[j].id, scans[i].id, overlap, *predicted});
     }
   });

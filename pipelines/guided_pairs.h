@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "pipelines/scan_products.h"
@@ -21,7 +22,12 @@ struct GuidedPair {
 struct OutlinedScan {
   int id = 0;
   const ScanSummary* summary = nullptr;
+  std::string name;  ///< for reasons; the id is used where it is empty
 };
+
+/// Share of the outlines that meet under the pose, the smaller of the two directions; 0 where the scans are out of each
+/// other's reach.
+double predicted_overlap(const ScanSummary& source, const ScanSummary& target, const Transform& target_from_source);
 
 /// Pairs within one component without an accepted link whose outlines overlap by a tenth or more, at most
 /// `pairs_per_scan` best for each scan. `scans` ascending by id; the answer ascending by (source, target), source >

@@ -13,8 +13,10 @@
 #include <memory>
 #include <new>
 
+#include "pipelines/bridge_checks.h"
 #include "pipelines/byte_gate.h"
-#include "pipelines/guided_pairs.h"
+#include "pipelines/model_pairs.h"
+#include "pipelines/pair_rounds.h"
 #include "pipelines/pair_stage.h"
 
 namespace isthmus::pipelines {
@@ -194,9 +196,22 @@ class SurveyGraph {
   void choose_candidates() {
     if (stop_ || (are_scans_missing() && !share_.only_looks())) return;
     if (const auto error = contained([&] { propose(); })) warn(error->text());
-    if (out_.pairs.empty()) solve_.try_put({});
-    num_pairs_ = out_.pairs.size();
-    for (PairOutcome& pair : out_.pairs) submit(pair, {});
+    ::malloc_trim(0);
+    if (stop_) return;
+    if (!rounds_ || !submit_all(rounds_->first())) solve_.try_put({});
+  }
+
+  /// Begins a wave of pairs; false if there are none. All pairs of the waves before are done.
+  bool submit_all(const std::vector<PlannedPair>& pairs) {
+    num_pairs_ += pairs.size();
+    std::vector<std::pair<std::size_t, std::vector<Transform>>> work;  // by index: the vector of outcomes grows
+    for (const PlannedPair& pair : pairs) {
+      std::vector<Transform> priors;
+      if (pair.target_from_source) priors.push_back(*pair.target_from_source);
+      work.emplace_back(index_of(pair), std::move(priors));
+    }
+    for (auto& [index, priors] : work) submit(out_.pairs[index], std::move(priors));
+    return !pairs.empty();
   }
 
   void propose() {
@@ -208,16 +223,16 @@ class SurveyGraph {
       const std::size_t count = summary.dimension == 0 ? 0 : summary.descriptors.size() / summary.dimension;
       inputs.push_back({scan.id, scan.ref.name, summary.descriptors, count, std::nullopt});
     }
-    const CandidateGraph graph = propose_candidates(inputs, settings_.candidates);
+    std::vector<std::pair<int, int>> glances = pairs_to_screen(inputs, settings_.candidates);
+    std::erase_if(glances, [&](const auto& pair) {  // a look ahead may not know a scan
+      return !plan_of_.contains(pair.first) || !plan_of_.contains(pair.second);
+    });
+    const ModelSources sources = model_sources();
+    CandidateGraph graph =
+        propose_candidates(inputs, settings_.candidates, screen_pairs(glances, sources, events_, stop_));
+    out_.num_screened = glances.size();
     for (const std::string& warning : graph.warnings) warn(warning);
-    for (const Candidate& candidate : graph.candidates) {
-      out_.pairs.push_back({});
-      PairOutcome& pair = out_.pairs.back();
-      pair.source = candidate.source;
-      pair.target = candidate.target;
-      pair.score = candidate.score;
-      pair.why = candidate.why;
-    }
+    rounds_ = std::make_unique<PairRounds>(std::move(graph), settings_.candidates, inputs.size());
     for (ScanOutcome& scan : out_.scans) {
       if (scan.summary) std::vector<float>().swap(scan.summary->descriptors);  // needed no more
     }
@@ -267,6 +282,7 @@ class SurveyGraph {
   /// A guided result counts only where it says more than the first one did.
   static void keep(PairOutcome& pair, PairResult result, bool guided) {
     if (guided && result.verdict <= pair.result.verdict) return;
+    pair.refuted.clear();
     pair.result = std::move(result);
     pair.guided = guided;
   }
@@ -285,38 +301,57 @@ class SurveyGraph {
 
   void solve_graph() {
     if (stop_ || are_scans_missing() || are_pairs_missing()) return;
-    if (const auto error = contained([&] { out_.solution = solve(graph_of_results(), settings_.solve); })) {
+    if (const auto error = contained([&] { solve_and_check(); })) warn(error->text());
+    if (!rounds_) return;
+    std::vector<PlannedPair> pairs;
+    if (const auto error = contained([&] { pairs = rounds_->next(out_.solution, outlined_scans()); }))
       warn(error->text());
-    }
-    if (guided_round_ || out_.pairs.empty()) return;
-    guided_round_ = true;
-    std::vector<GuidedPair> guided;
-    if (const auto error = contained([&] { guided = guided_pairs(); })) warn(error->text());
-    num_pairs_ += guided.size();
-    for (const GuidedPair& pair : guided) submit(outcome_of(pair), {pair.target_from_source});
+    submit_all(pairs);
   }
 
-  std::vector<GuidedPair> guided_pairs() {
+  /// A look ahead makes nothing: it knows what the store holds.
+  [[nodiscard]] ModelSources model_sources() {
+    return {plan_of_, store_, [this](int id) -> Result<ScanProduct> {
+              if (share_.only_looks()) return tl::unexpected(Error{"not made: this is a look ahead", "", ""});
+              return load_product(id);
+            }};
+  }
+
+  /// Solves, asks the scans on both sides of links without a loop, and solves again without those they refute.
+  void solve_and_check() {
+    const ModelSources sources = model_sources();
+    const auto check = [&](std::span<const PosedPair> pairs) { return check_poses(pairs, sources, events_, stop_); };
+    for (;;) {
+      out_.solution = solve(graph_of_results(), settings_.solve);
+      if (stop_) return;
+      bool found = false;
+      for (const RefutedLink& refuted : refuted_bridge(out_.solution, outlined_scans(), check)) {
+        const auto at = index_of_pair_.find(std::minmax(refuted.source, refuted.target));
+        found = out_.pairs[at->second].refute(refuted.reason) || found;
+      }
+      if (!found) return;
+    }
+  }
+
+  [[nodiscard]] std::vector<OutlinedScan> outlined_scans() const {
     std::vector<OutlinedScan> scans;
     for (const ScanOutcome& scan : out_.scans) {
-      if (scan.summary && !scan.error) scans.push_back({scan.id, &*scan.summary});
+      if (scan.summary && !scan.error) scans.push_back({scan.id, &*scan.summary, scan.ref.name});
     }
-    std::vector<GuidedPair> pairs = propose_guided_pairs(out_.solution, scans, settings_.candidates.pairs_per_scan);
-    out_.pairs.reserve(out_.pairs.size() + pairs.size());  // work in flight points into the vector
-    return pairs;
+    return scans;
   }
 
-  PairOutcome& outcome_of(const GuidedPair& guided) {
-    for (PairOutcome& pair : out_.pairs) {
-      if (std::minmax(pair.source, pair.target) == std::minmax(guided.source, guided.target)) return pair;
+  std::size_t index_of(const PlannedPair& planned) {
+    const auto [at, is_new] =
+        index_of_pair_.try_emplace(std::minmax(planned.source, planned.target), out_.pairs.size());
+    if (is_new) {
+      PairOutcome& pair = out_.pairs.emplace_back();
+      pair.source = planned.source;
+      pair.target = planned.target;
+      pair.score = planned.score;
+      pair.why = planned.why;
     }
-    PairOutcome pair;
-    pair.source = guided.source;
-    pair.target = guided.target;
-    pair.score = guided.predicted_overlap;
-    pair.why = "predicted";
-    out_.pairs.push_back(pair);
-    return out_.pairs.back();
+    return at->second;
   }
 
   PoseGraph graph_of_results() {
@@ -327,7 +362,7 @@ class SurveyGraph {
       graph.scans.push_back({scan.id, scan.ref.name, scan.summary->centre, scan.summary->radius_m});
     }
     for (const PairOutcome& pair : out_.pairs)
-      graph.links.push_back({pair.source, pair.target, pair.result, pair.guided});
+      graph.links.push_back({pair.source, pair.target, pair.result, pair.guided, pair.refuted});
     return graph;
   }
 
@@ -366,7 +401,8 @@ class SurveyGraph {
   std::size_t pairs_done_ = 0;     // likewise
   std::size_t num_submitted_ = 0;  // pairs of all waves: deals them out to shares
   std::size_t num_pairs_ = 0;      // written before pairs are submitted
-  bool guided_round_ = false;
+  std::unique_ptr<PairRounds> rounds_;
+  std::map<std::pair<int, int>, std::size_t> index_of_pair_;  // into out_.pairs; smaller id first
   std::atomic<std::size_t> num_made_again_{0};
 
   flow::graph graph_;

@@ -1,6 +1,6 @@
 // The whole survey as one flow graph:
 //
-//   read, reduce -> describe -> divide -> | candidates | -> pairs -> | graph | (-> guided pairs -> graph)
+//   read, reduce -> describe -> divide -> | glances, candidates | -> pairs -> | graph | (-> more pairs -> | graph |)*
 //
 // Each scan goes on as soon as it is there; | | waits for all. Memory in flight is bounded by bytes (byte_gate.h); a
 // failed scan or pair is data. Results are sorted by id before they leave: the same for any number of threads and order
@@ -27,7 +27,7 @@ struct ScanOutcome {
   std::optional<ScanSummary> summary;  ///< absent if it failed
   std::optional<Error> error;
   std::vector<StageTime> times;
-  bool missing = false;  ///< another share's, and not in the store
+  bool missing = false;           ///< another share's, and not in the store
   store::Key sampled, intensity;  ///< where these products lie in the store; empty if the scan was not planned
 };
 
@@ -42,6 +42,14 @@ struct PairOutcome {
   bool missing = false;       ///< another share's, and not in the store
   double seconds = 0;         ///< of this run
   PairResult result;          ///< between local frames, before solving
+  std::string refuted;  ///< why the scans around it forbid the accepted link (bridge_checks.h); empty if they do not
+
+  /// False if it was refuted before.
+  bool refute(const std::string& reason) {
+    if (!refuted.empty()) return false;
+    refuted = reason;
+    return true;
+  }
 };
 
 struct SurveyOutcome {
@@ -52,6 +60,7 @@ struct SurveyOutcome {
   std::vector<PairOutcome> pairs;     ///< ascending (source, target)
   Solution solution;                  ///< of the scans that did not fail
   std::vector<std::string> warnings;  ///< in a fixed order
+  std::size_t num_screened = 0;       ///< pairs that were glanced at before any was registered
   std::size_t num_made = 0;           ///< products computed in this run
   std::size_t num_found = 0;          ///< products found in the store
   std::size_t num_missing = 0;  ///< scans and pairs of other shares that are not in the store: there is no solution

@@ -57,7 +57,16 @@ double neighbour_distance_m(const Survey& survey) {
   return kth[kth.size() / 2];
 }
 
-void compute_scores(Survey& survey) {
+/// Where there was a glance it decides, and likeness only between equals.
+constexpr double kLikenessBesideGlance = 0.1;
+
+void compute_scores(Survey& survey, std::span<const ScreenedPair> screened) {
+  std::map<Pair, double> promise;
+  std::map<int, int> place_of_id;
+  for (int i = 0; i < survey.size(); ++i) place_of_id[survey.scans[i]->id] = i;
+  for (const ScreenedPair& s : screened)
+    promise[std::minmax(place_of_id.at(s.source), place_of_id.at(s.target))] = std::max(0.0, s.score);
+
   std::vector<survey::DescriptorView> views;
   for (const CandidateInput* scan : survey.scans) views.push_back({scan->descriptors, scan->num_keypoints});
   const std::vector<survey::WordBag> bags = survey::weighted_bags(views);
@@ -69,6 +78,10 @@ void compute_scores(Survey& survey) {
       if (a == b) continue;
       // The smaller index first, so that both halves hold the same bits.
       double score = survey::likeness(bags[std::min(a, b)], bags[std::max(a, b)]);
+      if (!promise.empty()) {
+        const auto glance = promise.find(std::minmax(static_cast<int>(a), static_cast<int>(b)));
+        score = kLikenessBesideGlance * score + (glance != promise.end() ? glance->second : 0.0);
+      }
       const std::optional<double> d = survey.distance_m(static_cast<int>(a), static_cast<int>(b));
       if (d && typical_m > 0) score = (score + 1.0) / (2.0 * (1.0 + *d * *d / (typical_m * typical_m)));
       survey.scores[a * n + b] = score;
@@ -107,33 +120,32 @@ void add_file_order(const Survey& survey, std::map<Pair, const char*>& chosen) {
       if (survey.allowed(order[i], order[i + k])) add(chosen, order[i], order[i + k], "file order");
 }
 
-void add_most_alike(const Survey& survey, std::map<Pair, const char*>& chosen) {
+void add_most_alike(const Survey& survey, std::size_t per_scan, std::map<Pair, const char*>& chosen) {
   for (int a = 0; a < survey.size(); ++a) {
     std::vector<int> others;
     for (int b = 0; b < survey.size(); ++b)
       if (b != a && survey.allowed(a, b)) others.push_back(b);
     std::stable_sort(others.begin(), others.end(),
                      [&](int x, int y) { return survey.score(a, x) > survey.score(a, y); });
-    others.resize(std::min<std::size_t>(others.size(), static_cast<std::size_t>(survey.options.pairs_per_scan)));
+    others.resize(std::min(others.size(), per_scan));
     for (const int b : others) add(chosen, a, b, "likeness");
   }
 }
 
-/// Joins the parts of the graph by the most similar pairs between them. The union of each scan's best leaves room for
-/// it: every part holds at least one pair that two scans chose mutually, so parts - 1 more pairs stay within scans x
-/// pairs_per_scan.
-void connect(const Survey& survey, std::map<Pair, const char*>& chosen, std::vector<std::string>& warnings) {
-  survey::DisjointSets sets(survey.size());
-  for (const auto& [pair, why] : chosen) sets.join(pair.first, pair.second);
-  std::vector<Pair> rest;
+/// Pairs that were not chosen and may be.
+std::map<Pair, const char*> rest_of(const Survey& survey, const std::map<Pair, const char*>& chosen) {
+  std::map<Pair, const char*> rest;
   for (int a = 0; a < survey.size(); ++a)
     for (int b = a + 1; b < survey.size(); ++b)
-      if (sets.find(a) != sets.find(b) && survey.allowed(a, b)) rest.emplace_back(a, b);
-  std::stable_sort(rest.begin(), rest.end(), [&](const Pair& x, const Pair& y) {
-    return survey.score(x.first, x.second) > survey.score(y.first, y.second);
-  });
-  for (const auto& [a, b] : rest)
-    if (sets.join(a, b)) add(chosen, a, b, "connects");
+      if (survey.allowed(a, b) && !chosen.contains({a, b})) rest.emplace(Pair{a, b}, "likeness");
+  return rest;
+}
+
+void warn_of_parts(const Survey& survey, std::vector<std::string>& warnings) {
+  survey::DisjointSets sets(survey.size());
+  for (int a = 0; a < survey.size(); ++a)
+    for (int b = a + 1; b < survey.size(); ++b)
+      if (survey.allowed(a, b)) sets.join(a, b);
   std::set<int> parts;
   for (int i = 0; i < survey.size(); ++i) parts.insert(sets.find(i));
   if (parts.size() > 1)
@@ -148,6 +160,17 @@ std::vector<Candidate> ranked(const Survey& survey, const std::map<Pair, const c
         {survey.scans[pair.second]->id, survey.scans[pair.first]->id, survey.score(pair.first, pair.second), why});
   std::stable_sort(out.begin(), out.end(), [](const Candidate& x, const Candidate& y) { return x.score > y.score; });
   return out;
+}
+
+Survey compared(std::span<const CandidateInput> scans, const CandidateOptions& options,
+                std::span<const ScreenedPair> screened) {
+  Survey survey;
+  survey.options = options;
+  for (const CandidateInput& scan : scans) survey.scans.push_back(&scan);
+  std::sort(survey.scans.begin(), survey.scans.end(),
+            [](const CandidateInput* a, const CandidateInput* b) { return a->name < b->name; });
+  compute_scores(survey, screened);
+  return survey;
 }
 
 }  // namespace
@@ -175,13 +198,21 @@ bool natural_less(std::string_view a, std::string_view b) {
   return a < b;  // equal but for leading zeros
 }
 
-CandidateGraph propose_candidates(std::span<const CandidateInput> scans, const CandidateOptions& options) {
-  Survey survey;
-  survey.options = options;
-  for (const CandidateInput& scan : scans) survey.scans.push_back(&scan);
-  std::sort(survey.scans.begin(), survey.scans.end(),
-            [](const CandidateInput* a, const CandidateInput* b) { return a->name < b->name; });
-  compute_scores(survey);
+std::vector<std::pair<int, int>> pairs_to_screen(std::span<const CandidateInput> scans,
+                                                 const CandidateOptions& options) {
+  if (options.only_groups || static_cast<int>(scans.size()) <= options.all_pairs_up_to) return {};
+  const Survey survey = compared(scans, options, {});
+  std::map<Pair, const char*> chosen;
+  add_most_alike(survey, static_cast<std::size_t>(options.screened_per_scan), chosen);
+  std::vector<std::pair<int, int>> pairs;
+  for (const auto& [pair, why] : chosen)
+    pairs.emplace_back(survey.scans[pair.second]->id, survey.scans[pair.first]->id);
+  return pairs;
+}
+
+CandidateGraph propose_candidates(std::span<const CandidateInput> scans, const CandidateOptions& options,
+                                  std::span<const ScreenedPair> screened) {
+  const Survey survey = compared(scans, options, screened);
   CandidateGraph graph;
   std::map<Pair, const char*> chosen;
   add_groups(survey, chosen, graph.warnings);
@@ -192,9 +223,11 @@ CandidateGraph propose_candidates(std::span<const CandidateInput> scans, const C
         for (int b = a + 1; b < survey.size(); ++b)
           if (survey.allowed(a, b)) add(chosen, a, b, "all pairs");
     } else {
-      add_most_alike(survey, chosen);
+      // Half of the budget at first: the rest goes where the first results leave scans unplaced.
+      add_most_alike(survey, static_cast<std::size_t>((options.pairs_per_scan + 1) / 2), chosen);
+      graph.reserve = ranked(survey, rest_of(survey, chosen));
     }
-    connect(survey, chosen, graph.warnings);
+    warn_of_parts(survey, graph.warnings);
   }
   graph.candidates = ranked(survey, chosen);
   return graph;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "config/option_table.h"
@@ -23,6 +24,7 @@ struct CandidateInput {
 struct CandidateOptions {
   int all_pairs_up_to = 24;
   int pairs_per_scan = 5;
+  int screened_per_scan = 24;
   int file_order_neighbours = 0;
   std::vector<std::string> groups;
   bool only_groups = false;
@@ -34,19 +36,34 @@ const config::OptionTable<CandidateOptions>& candidate_options_table();
 struct Candidate {
   int source = 0;    ///< id; the scan whose name sorts later, byte by byte
   int target = 0;    ///< id
-  double score = 0;  ///< likeness in [0, 1], damped by distance where priors are known
+  double score = 0;  ///< promise: likeness in [0, 1] and, where screened, what a glance found; damped by distance
   std::string why;   ///< "all pairs", "likeness", "connects", "group", "file order"
 };
 
 struct CandidateGraph {
   std::vector<Candidate> candidates;  ///< best score first, then by the scans' names
+  std::vector<Candidate> reserve;  ///< what the budget leaves for later, in the same order; empty where all are tried
   std::vector<std::string> warnings;  ///< group entries that match no scan, parts that no pair may connect
 };
+
+/// What a glance at a pair found (pairwise/screen_pair.h).
+struct ScreenedPair {
+  int source = 0;  ///< ids
+  int target = 0;
+  double score = 0;
+};
+
+/// The pairs that deserve a glance before any is registered: each scan's `screened_per_scan` most alike, unless all
+/// pairs are tried anyway or nothing but groups is wanted. Ascending by the scans' names.
+std::vector<std::pair<int, int>> pairs_to_screen(std::span<const CandidateInput> scans,
+                                                 const CandidateOptions& options);
 
 /// Bags of visual words compared by tf-idf (Sivic, Zisserman 2003); a word is the signs of a descriptor's distances to
 /// random planes from a fixed seed (locality-sensitive hashing, Charikar 2002), so nothing is trained. The same graph
 /// for any order of the inputs and any thread count. Precondition: equal dimensions, unique ids and names.
-CandidateGraph propose_candidates(std::span<const CandidateInput> scans, const CandidateOptions& options);
+/// `screened` raises the promise of pairs; those without a glance keep a little of their likeness.
+CandidateGraph propose_candidates(std::span<const CandidateInput> scans, const CandidateOptions& options,
+                                  std::span<const ScreenedPair> screened = {});
 
 /// Names as people sort them: runs of digits compare as numbers ("s2" before "s10").
 bool natural_less(std::string_view a, std::string_view b);

@@ -98,8 +98,20 @@ const config::OptionTable<CandidateOptions>& candidate_options_table() {
            1,
            10000,
            {},
-           "Above all_pairs_up_to: each scan is tried with this many of the most similar ones.",
+           "Above all_pairs_up_to: so many pairs a scan are tried on the promise of a glance, half of them at once, "
+           "the "
+           "others where the results leave scans unplaced; and twice as many that solved poses predict to overlap.",
            "a station of a survey sees three to six neighbours well"},
+          {"screened_per_scan",
+           &O::screened_per_scan,
+           "",
+           0,
+           10000,
+           {},
+           "Above all_pairs_up_to: a glance (a twentieth of a registration) is cast at the pairs of each scan with "
+           "this "
+           "many of the most similar ones; 0: none, likeness alone chooses.",
+           "docs/stages/candidates.md, table of recall"},
           {"file_order_neighbours",
            &O::file_order_neighbours,
            "",

@@ -22,7 +22,7 @@ struct Line {
       placed.id = i;
       placed.component_from_local.translation() = Eigen::Vector3d(10.0 * i, 0, 0);
       solution.scans.push_back(placed);
-      scans.push_back({i, &scan});
+      scans.push_back({i, &scan, ""});
     }
   }
   void link(int source, int target, Verdict verdict) {

@@ -1,0 +1,33 @@
+// Links that no loop confirms, called to account: when such a link is wrong, whole parts stand where they cannot, and
+// pairs of their scans that were never linked show it. A room that equals its neighbour fits; the floor around it does
+// not.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pipelines/guided_pairs.h"
+#include "pipelines/model_pairs.h"
+
+namespace isthmus::pipelines {
+
+/// An accepted link that the scans on its two sides forbid.
+struct RefutedLink {
+  int source = 0;
+  int target = 0;
+  std::string reason;
+};
+
+using PoseChecker = std::function<std::vector<std::optional<PoseCheck>>(std::span<const PosedPair>)>;
+
+/// For every accepted link that nothing else spans, the pairs of scans near it and across it that would overlap most:
+/// where a third or more of those checked stand in each other's seen-through space, the link is refuted. Only the one
+/// accused by the largest share, since its neighbours share its witnesses, and with it the links that were found where
+/// it pointed. Solve again without them and ask again. `scans` ascending by id.
+std::vector<RefutedLink> refuted_bridge(const Solution& solution, std::span<const OutlinedScan> scans,
+                                        const PoseChecker& check);
+
+}  // namespace isthmus::pipelines

@@ -24,9 +24,9 @@ struct RefutedLink {
 using PoseChecker = std::function<std::vector<std::optional<PoseCheck>>(std::span<const PosedPair>)>;
 
 /// For every accepted link that nothing else spans, the pairs of scans near it and across it that would overlap most:
-/// where a third or more of those checked stand in each other's seen-through space, the link is refuted. Only the one
-/// accused by the largest share, since its neighbours share its witnesses, and with it the links that were found where
-/// it pointed. Solve again without them and ask again. `scans` ascending by id.
+/// where too many of them stand in each other's seen-through space, one link is refuted: the one that most of the
+/// forbidden pairs cross, of equals the one with most free space against itself; and with it the links that were found
+/// where it pointed. Solve again without them and ask again. `scans` ascending by id.
 std::vector<RefutedLink> refuted_bridge(const Solution& solution, std::span<const OutlinedScan> scans,
                                         const PoseChecker& check);
 

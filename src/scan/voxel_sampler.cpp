@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <unordered_set>
 
 #include "geometry/point_grid.h"
+#include "scan/clutter.h"
 #include "scan/free_space.h"
 #include "scan/sampling.h"
 #include "scan/station.h"
@@ -216,16 +218,19 @@ VoxelMoments moments_of(const Voxel& v, double voxel_m) {
   return out;
 }
 
-// Merges fine voxels into the coarse ones they lie in; moments add up after a shift to the coarse centre.
-std::vector<Voxel> merged(const std::vector<Voxel>& fine, double fine_voxel_m) {
-  const auto coarse_part = [](std::uint64_t key, int shift) {
-    const auto cell = static_cast<std::int64_t>(key >> shift & 0x1fffff) - kKeyOffset;
+// Key of the coarse voxel that a fine one lies in.
+std::uint64_t coarse_key(std::uint64_t fine_key) {
+  const auto part = [&](int shift) {
+    const auto cell = static_cast<std::int64_t>(fine_key >> shift & 0x1fffff) - kKeyOffset;
     return (cell >= 0 ? cell : cell - (kFineRatio - 1)) / kFineRatio;  // floor division
   };
+  return voxel_key({part(42), part(21), part(0)});
+}
+
+// Merges fine voxels into the coarse ones they lie in; moments add up after a shift to the coarse centre.
+std::vector<Voxel> merged(const std::vector<Voxel>& fine, double fine_voxel_m) {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> order(fine.size());
-  for (std::uint32_t i = 0; i < fine.size(); ++i)
-    order[i] = {voxel_key({coarse_part(fine[i].key, 42), coarse_part(fine[i].key, 21), coarse_part(fine[i].key, 0)}),
-                i};
+  for (std::uint32_t i = 0; i < fine.size(); ++i) order[i] = {coarse_key(fine[i].key), i};
   std::sort(order.begin(), order.end());
   std::vector<Voxel> out;
   for (const auto& [key, i] : order) {
@@ -242,6 +247,52 @@ std::vector<Voxel> merged(const std::vector<Voxel>& fine, double fine_voxel_m) {
     v.count += f.count;
   }
   return out;
+}
+
+std::vector<Eigen::Vector3f> means_of(const std::vector<Voxel>& voxels, double voxel_m) {
+  std::vector<Eigen::Vector3f> means(voxels.size());
+  for (std::size_t i = 0; i < voxels.size(); ++i)
+    means[i] = (voxel_centre(voxels[i].key, voxel_m) + voxels[i].sum / voxels[i].count).cast<float>();
+  return means;
+}
+
+std::vector<std::uint32_t> counts_of(const std::vector<Voxel>& voxels) {
+  std::vector<std::uint32_t> counts;
+  for (const Voxel& v : voxels) counts.push_back(v.count);
+  return counts;
+}
+
+double clutter_density_of(const std::vector<Voxel>& voxels, double voxel_m) {
+  const auto means = means_of(voxels, voxel_m);
+  const auto counts = counts_of(voxels);
+  return clutter_density({means, counts, static_cast<float>(voxel_m)});
+}
+
+// Takes out the voxels that chance alone would fill at this density of clutter; returns their keys.
+std::unordered_set<std::uint64_t> take_out_clutter(std::vector<Voxel>& voxels, double voxel_m, double density) {
+  std::unordered_set<std::uint64_t> keys;
+  const auto means = means_of(voxels, voxel_m);
+  const auto counts = counts_of(voxels);
+  const auto clutter = find_clutter({means, counts, static_cast<float>(voxel_m)}, density);
+  for (std::size_t i = 0; i < voxels.size(); ++i)
+    if (clutter[i]) keys.insert(voxels[i].key);
+  std::erase_if(voxels, [&](const Voxel& v) { return keys.contains(v.key); });
+  return keys;
+}
+
+// Nearest ranges by direction, of what remains when clutter is taken out.
+FreeSpace image_of(const std::vector<Voxel>& fine, double fine_voxel_m, const Eigen::Vector3f& station) {
+  FreeSpace image;
+  image.size = kCubeSize;
+  image.nearest_m.assign(6 * static_cast<std::size_t>(kCubeSize) * kCubeSize, std::numeric_limits<float>::infinity());
+  const std::vector<Eigen::Vector3f> means = means_of(fine, fine_voxel_m);
+  for (std::size_t i = 0; i < fine.size(); ++i) {
+    const Eigen::Vector3f ray = means[i] - station;
+    if (ray.isZero()) continue;
+    float& nearest = image.nearest_m[cube_cell(ray, kCubeSize)];
+    nearest = std::min(nearest, fine[i].min_range_m);
+  }
+  return image;
 }
 
 // Points, normals and variation of the voxels that belong to a surface; returns the index of each kept voxel.
@@ -296,7 +347,20 @@ Result<SampledScan> VoxelSampler::finish() {
   }
   std::sort(s.voxels.begin(), s.voxels.end(), [](const Voxel& a, const Voxel& b) { return a.key < b.key; });
   {
-    const std::vector<Voxel> coarse = merged(s.voxels, s.fine_voxel_m);
+    std::vector<Voxel> coarse = merged(s.voxels, s.fine_voxel_m);
+    const double density = clutter_density_of(coarse, s.voxel_m);
+    if (density > 0) {
+      const std::size_t before = coarse.size();
+      const auto keys = take_out_clutter(coarse, s.voxel_m, density);
+      for (const Voxel& v : s.voxels)
+        if (keys.contains(coarse_key(v.key))) out.num_dropped += v.count;
+      std::erase_if(s.voxels, [&](const Voxel& v) { return keys.contains(coarse_key(v.key)); });
+      if (s.candidate_station) s.raw = image_of(s.voxels, s.fine_voxel_m, *s.candidate_station);
+      constexpr double kFineVoxels = kFineRatio * kFineRatio * kFineRatio;
+      take_out_clutter(s.voxels, s.fine_voxel_m, density / kFineVoxels);
+      out.notes.push_back(fmt::format("{:.0f} % of the voxels float evenly in the air and were left out",
+                                      100.0 * static_cast<double>(keys.size()) / static_cast<double>(before)));
+    }
     SurfacePoints surface;
     const std::vector<std::uint32_t> kept = fill(surface, coarse, s.voxel_m);
     for (const Voxel& v : coarse) out.num_dropped += v.count;

@@ -28,6 +28,13 @@ bool slides(const PairEvidence& e) {
   return e.near_score > kAsGood * e.score && e.observability < kHardlyObserved;
 }
 
+// Where one direction is not observed at all (one plane, parallel walls, a piece of floor) no share explained tells
+// where along it the pair belongs, whatever the other hypotheses are. The least at right poses: 0.02 (a Stanford view).
+bool unobserved(const PairEvidence& e) {
+  constexpr double kNotObserved = 0.01;
+  return e.observability < kNotObserved;
+}
+
 }  // namespace
 
 double probability_of(const PairEvidence& e) {
@@ -42,7 +49,7 @@ double probability_of(const PairEvidence& e) {
                        kNear * std::min(e.near_score / score, 1.0);
   const double p = 1 / (1 + std::exp(-logit));
   if (vetoed(e)) return std::min(p, kVetoedProbability);
-  return slides(e) ? std::min(p, kSlidingProbability) : p;
+  return slides(e) || unobserved(e) ? std::min(p, kSlidingProbability) : p;
 }
 
 bool forbidden_by_free_space(const PairResult& result) {
@@ -84,6 +91,10 @@ void judge(const PairEvidence& e, const PairOptions& options, PairResult& result
   if (vetoed(e))
     result.reason =
         fmt::format("{:.1f} % of the points stand where the other station saw through", 100 * e.contradiction);
+  else if (unobserved(e) && e.support > 0)
+    result.reason = fmt::format(
+        "nothing fixes the place along one direction: {:.0f} % of the smaller scan is explained, but it slides",
+        100 * e.support);
   else if (slides(e) && e.score >= kClearMargin * e.rival_score)
     result.reason = fmt::format("the place is hardly fixed: a neighbouring pose explains {:.0f} % as much",
                                 100 * std::min(1.0, e.near_score / std::max(e.score, 1e-9)));

@@ -52,6 +52,18 @@ TEST(Verdict, ANeighbourAsGoodAlongAnUnobservedDirectionIsAmbiguous) {
   }
 }
 
+TEST(Verdict, ADirectionThatNothingFixesIsAmbiguousWithoutAnyNeighbour) {
+  PairEvidence e = good_evidence();
+  e.observability = 0.002;
+  PairResult result;
+  judge(e, PairOptions{}, result);
+  EXPECT_EQ(result.verdict, Verdict::ambiguous);
+  EXPECT_NE(result.reason.find("nothing fixes"), std::string::npos) << result.reason;
+  e.observability = 0.02;
+  judge(e, PairOptions{}, result);
+  EXPECT_EQ(result.verdict, Verdict::accepted) << result.reason;
+}
+
 TEST(Verdict, ARivalIsNamedByWhereItLies) {
   PairEvidence e = good_evidence();
   e.rival_score = 0.9 * e.score, e.rival_voxels = 42, e.rival_deg = 91;

@@ -65,20 +65,33 @@ CONF
   return 1
 }
 
-# kill_node NAME PID: its daemon, the keepers of its steps and what they run, as when a machine loses its power.
-kill_node() {
-  local tasks=() keepers=() pid parent
-  kill -9 "$2"
+# tasks_on NAME: processes of jobs there.
+tasks_on() {
+  local pid
   for pid in /proc/[0-9]*; do
-    pid=${pid#/proc/}
-    tr '\0' '\n' 2>/dev/null <"/proc/$pid/environ" | grep -qx "SLURM_CONF=$cluster/slurm.conf" || continue
-    tr '\0' '\n' 2>/dev/null <"/proc/$pid/environ" | grep -qx "SLURMD_NODENAME=$1" || continue
-    tasks+=("$pid")
-    parent=$(awk '{print $4}' "/proc/$pid/stat" 2>/dev/null) || continue
-    [ "$(cat "/proc/$parent/comm" 2>/dev/null)" = slurmstepd ] && keepers+=("$parent")
+    { tr '\0' '\n' <"$pid/environ" | grep -cxE "SLURM_CONF=$cluster/slurm.conf|SLURMD_NODENAME=$1" | grep -qx 2; } 2>/dev/null &&
+      echo "${pid#/proc/}"
   done
-  for pid in "${keepers[@]}" "${tasks[@]}"; do kill -9 "$pid" 2>/dev/null || true; done
-  echo "killed node $1: its daemon, ${#keepers[@]} steps, ${#tasks[@]} processes"
+  true
+}
+
+# kill_node NAME PID: its daemon, the keepers of its steps and what they run, as when a machine loses its power. Waits until
+# there is something to lose.
+kill_node() {
+  local tasks keepers="" pid parent
+  for _ in $(seq 600); do
+    tasks=$(tasks_on "$1")
+    [ -n "$tasks" ] && break
+    sleep 0.1
+  done
+  kill -9 "$2"
+  for pid in $tasks; do
+    parent=$(awk '{print $4}' "/proc/$pid/stat" 2>/dev/null) || continue
+    [ "$(cat "/proc/$parent/comm" 2>/dev/null)" = slurmstepd ] && keepers+=" $parent"
+  done
+  for pid in $keepers $tasks; do kill -9 "$pid" 2>/dev/null || true; done
+  echo "killed node $1: its daemon, $(wc -w <<<"$keepers") steps, $(wc -w <<<"$tasks") processes"
+  [ -n "$tasks" ]
 }
 
 stop_cluster() {

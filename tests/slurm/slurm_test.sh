@@ -65,7 +65,7 @@ for _ in $(seq 600); do
     [ -n "$(find "$work/killed/store/pair" -name '*.artifact' 2>/dev/null | head -1)" ] && break
   sleep 0.2
 done
-kill_node n2 "$pid_of_n2"
+kill_node n2 "$pid_of_n2" || fail "no task ran on n2"
 wait_for "$work/killed"
 cat "$work/status"
 same_bytes "$work/killed"

@@ -10,12 +10,16 @@ packages=(
   libyaml-cpp-dev libcli11-dev libfmt-dev libexpected-dev libxxhash-dev nlohmann-json3-dev libpugixml-dev
   libgtest-dev libbenchmark-dev
   # the 3D view of the report, and a browser to test the page in
-  nodejs npm chromium
+  chromium
   # plots and the checks of results
   python3 python3-numpy python3-scipy python3-matplotlib python3-open3d
   # a Slurm of two nodes on this machine, for the test of isthmus submit
   slurm-wlm munge
 )
+
+# Node.js of another source brings its own npm, and Debian's would conflict with it.
+command -v node >/dev/null || packages+=(nodejs)
+command -v npm >/dev/null || packages+=(npm)
 
 missing=()
 for package in "${packages[@]}"; do

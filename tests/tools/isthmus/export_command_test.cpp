@@ -154,8 +154,9 @@ TEST_F(ExportCommand, PtxHoldsTheScansInTheirOwnFramesAndThePoses) {
       ASSERT_TRUE(in >> p.x() >> p.y() >> p.z() >> intensity);
       EXPECT_EQ(p, Eigen::Vector3d(static_cast<double>(x), i, 0));
       EXPECT_EQ(intensity, i);
-      if (x == 12.0F)
+      if (x == 12.0F) {
         EXPECT_LT(((p.homogeneous().transpose() * m).head<3>() - Eigen::RowVector3d(5 - i, 6 + 12, 7)).norm(), 1e-9);
+      }
     }
   }
 }

@@ -46,7 +46,7 @@ Result<void> apply_profiles(const YAML::Node& job, const fs::path& file, Setting
 }
 
 Result<Job> job_of(const YAML::Node& node, const fs::path& file) {
-  static const std::array<std::string, 4> kKeys = {"input", "output", "profile", "settings"};
+  static const std::array<std::string, 5> kKeys = {"input", "output", "control", "profile", "settings"};
   const std::string name = file.string();
   if (const Result<void> known = config::check_keys(node, kKeys, name); !known) return tl::unexpected(known.error());
   Job job;
@@ -59,6 +59,12 @@ Result<Job> job_of(const YAML::Node& node, const fs::path& file) {
   if (!output) return tl::unexpected(output.error());
   if (output->size() != 1) return fail("a job has one output", config::place(name, node["output"].Mark()));
   job.output = beside(output->front());
+  if (node["control"] && !node["control"].IsNull()) {
+    const Result<std::vector<std::string>> control = words_of(node, "control", name);
+    if (!control) return tl::unexpected(control.error());
+    if (control->size() != 1) return fail("a job has one control file", config::place(name, node["control"].Mark()));
+    job.control = beside(control->front());
+  }
   if (const Result<void> done = apply_profiles(node, file, job.settings); !done) return tl::unexpected(done.error());
   if (node["settings"]) {
     std::vector<config::Stage> stages = job.settings.stages();
@@ -136,7 +142,9 @@ std::string resolved_job(const Job& job, const fs::path& folder) {
     out += "input:\n";
     for (const fs::path& input : job.inputs) out += fmt::format("  - {}\n", in_quotes(relative_path(input, folder)));
   }
-  out += fmt::format("output: {}\nsettings:\n", in_quotes(relative_path(job.output, folder)));
+  out += fmt::format("output: {}\n", in_quotes(relative_path(job.output, folder)));
+  if (!job.control.empty()) out += fmt::format("control: {}\n", in_quotes(relative_path(job.control, folder)));
+  out += "settings:\n";
   Settings settings = job.settings;
   if (!settings.run.store.empty()) settings.run.store = relative_path(settings.run.store, folder);
   return out + config::resolved_yaml(settings.stages(), settings.origins, 2);

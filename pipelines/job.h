@@ -3,6 +3,7 @@
 //   input: scans/            # a folder, or a list of files; paths are relative to this file
 //   output: out/
 //   profile: quick           # optional: a built-in profile or a configuration file; a list is applied in order
+//   control: control.yaml    # optional: known points and poses, docs/stages/control.md
 //   settings: {sampling: {voxel_m: 0.1}}
 //
 // A list of such jobs is a batch.
@@ -21,6 +22,7 @@ struct Job {
   std::string origin;                         ///< "command line", "batch.yaml:12"
   std::vector<std::filesystem::path> inputs;  ///< one folder, or files
   std::filesystem::path output;
+  std::filesystem::path control;  ///< file of known points and poses; empty: none
   Settings settings;
   Share share;          ///< of the work; not part of the file
   double wait_s = 600;  ///< a shard waits for others as long as something new comes from them within this time

@@ -2,13 +2,9 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <ctime>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -16,9 +12,11 @@
 #include "base/atomic_file.h"
 #include "io/format_table.h"
 #include "io/scan_directory.h"
+#include "pipelines/control_file.h"
 #include "pipelines/night.h"
 #include "pipelines/output_folder.h"
 #include "pipelines/planning.h"
+#include "pipelines/run_facts.h"
 #include "pipelines/survey_pipeline.h"
 #include "pipelines/survey_record.h"
 #include "pipelines/survey_warnings.h"
@@ -33,32 +31,6 @@ namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds kBetweenLooks{
     500};  // a look loads every summary: seconds would idle, less would load
-
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday,
-                     utc.tm_hour, utc.tm_min, utc.tm_sec);
-}
-
-std::string host_name() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? std::string(name.data()) : "unknown";
-}
-
-std::uint64_t peak_memory_bytes() {
-  struct rusage usage {};
-  ::getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
-}
-
-JobEnd end_of(const report::SurveyRecord& record) {
-  for (const report::ScanRecord& scan : record.scans) {
-    if (report::component_of(record, scan.id) != 0) return JobEnd::unconnected;
-  }
-  return JobEnd::connected;
-}
 
 /// Where no scans are looked for; the output stays when it is the input, too.
 std::vector<fs::path> folders_of_output(const Job& job) {
@@ -117,19 +89,9 @@ std::string extensions() {
   return fmt::format("{}", fmt::join(all, " "));
 }
 
-std::string text_of(const std::vector<fs::path>& paths) {
-  std::vector<std::string> words;
-  for (const fs::path& path : paths) words.push_back(path.string());
-  return fmt::format("{}", fmt::join(words, " "));
-}
-
-/// Those of the listing before, those of the finished survey behind what the record holds already; the latter are told.
-void complete_warnings(report::SurveyRecord& record, const std::vector<std::string>& of_listing, const Events& events) {
-  const std::vector<std::string> late = survey_warnings(record);
-  for (const std::string& warning : late) events.warn(warning);
-  for (const std::string& warning : record.solution.warnings) events.warn(warning);
-  record.warnings.insert(record.warnings.begin(), of_listing.begin(), of_listing.end());
-  record.warnings.insert(record.warnings.end(), late.begin(), late.end());
+/// Read before the scans are: a wrong file must not show after a long night.
+Result<std::vector<ControlItem>> control_items(const Job& job) {
+  return job.control.empty() ? std::vector<ControlItem>{} : read_control(job.control);
 }
 
 Result<OutputFolder> open_output(const Job& job) {
@@ -198,21 +160,40 @@ void note(const std::shared_ptr<store::Journal>& journal, const std::string& eve
 Result<io::ScanListing> scans_of_job(const Job& job) {
   Result<io::ScanListing> listing = io::list_scans(job.inputs, folders_of_output(job));
   if (!listing || !listing->scans.empty()) return listing;
-  return fail("no scans found", text_of(job.inputs), "files are known by their extensions: " + extensions());
+  return fail("no scans found", text_of_inputs(job), "files are known by their extensions: " + extensions());
+}
+
+JobEnd end_of(const report::SurveyRecord& record) {
+  for (const report::ScanRecord& scan : record.scans) {
+    if (report::component_of(record, scan.id) != 0) return JobEnd::unconnected;
+  }
+  return JobEnd::connected;
+}
+
+std::string text_of_inputs(const Job& job) {
+  std::vector<std::string> words;
+  for (const fs::path& path : job.inputs) words.push_back(path.string());
+  return fmt::format("{}", fmt::join(words, " "));
+}
+
+void complete_warnings(report::SurveyRecord& record, const Events& events) {
+  const std::vector<std::string> late = survey_warnings(record);
+  for (const std::string& warning : late) events.warn(warning);
+  for (const std::string& warning : record.solution.warnings) events.warn(warning);
+  record.warnings.insert(record.warnings.end(), late.begin(), late.end());
 }
 
 Result<JobResult> run_job(const Job& job, const std::string& command, const Events& events,
                           const std::atomic<bool>& stop) {
   const auto start = std::chrono::steady_clock::now();
-  report::RunRecord run;
-  run.command = command;
-  run.started = utc_now();
-  run.host = host_name();
+  report::RunRecord run = begun_run(command);
 
   Result<OutputFolder> output = open_output(job);  // before anything is read: it may be a long night
   if (!output) return tl::unexpected(output.error());
   Result<io::ScanListing> listing = scans_of_job(job);
   if (!listing) return tl::unexpected(listing.error());
+  const Result<std::vector<ControlItem>> control = control_items(job);
+  if (!control) return tl::unexpected(control.error());
   for (const std::string& note : listing->notes) events.info(note);
   bool with_view = false;
   if (job.share.is_whole()) {
@@ -256,12 +237,19 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
               {"products_found", std::to_string(outcome.num_found)},
               {"peak_bytes_in_flight", std::to_string(outcome.peak_bytes_in_flight)}};
 
+  const MeasuredSurvey measured = measured_of(job, outcome, listing->warnings);
+  run.more.emplace_back("survey", keep_measured(measured, *store));
+  if (!control->empty()) {
+    const Result<Control> found = control_of(*control, measured);
+    if (!found) return tl::unexpected(found.error());
+    outcome.solution = solve(measured.graph, job.settings.solve, *found);
+  }
   const std::map<int, ViewKeys> keys = view_keys(outcome);
-  result.record = record_of(job, std::move(outcome));
+  result.record = record_of(job, measured, std::move(outcome.solution));
   if (with_view) add_view_clouds(keys, *store, result.record);
-  complete_warnings(result.record, listing->warnings, events);
+  complete_warnings(result.record, events);
   result.end = end_of(result.record);
-  run.input = text_of(job.inputs);
+  run.input = text_of_inputs(job);
   run.output = job.output.string();
   run.store = store_folder(job).string();
   run.threads = threads_of(job.settings.run);

@@ -35,4 +35,12 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
 /// The scans of a job: what is in its inputs but not in its output or store. Fails when there are none.
 Result<io::ScanListing> scans_of_job(const Job& job);
 
+JobEnd end_of(const report::SurveyRecord& record);
+
+/// The paths of the input, one after the other.
+std::string text_of_inputs(const Job& job);
+
+/// Warnings of the finished survey, behind those that the record holds already; all but the latter are told.
+void complete_warnings(report::SurveyRecord& record, const Events& events);
+
 }  // namespace isthmus::pipelines

@@ -322,7 +322,8 @@ class SurveyGraph {
     const ModelSources sources = model_sources();
     const auto check = [&](std::span<const PosedPair> pairs) { return check_poses(pairs, sources, events_, stop_); };
     for (;;) {
-      out_.solution = solve(graph_of_results(), settings_.solve);
+      out_.graph = graph_of_results();
+      out_.solution = solve(out_.graph, settings_.solve);
       if (stop_) return;
       bool found = false;
       for (const RefutedLink& refuted : refuted_bridge(out_.solution, outlined_scans(), check)) {
@@ -362,7 +363,7 @@ class SurveyGraph {
       graph.scans.push_back({scan.id, scan.ref.name, scan.summary->centre, scan.summary->radius_m});
     }
     for (const PairOutcome& pair : out_.pairs)
-      graph.links.push_back({pair.source, pair.target, pair.result, pair.guided, pair.refuted});
+      graph.links.push_back({pair.source, pair.target, pair.result, pair.guided, pair.refuted, ByHand::nothing});
     return graph;
   }
 
@@ -452,7 +453,7 @@ SurveyOutcome run_survey(const std::vector<io::ListedScan>& scans, const Setting
   oneapi::tbb::task_arena arena(static_cast<int>(threads));
   arena.execute([&] {
     const SurveyPlan plan = plan_survey(scans, settings, store, events, stop, share);
-    out.voxel_m = plan.voxel_m;
+    out.voxel_m = out.graph.voxel_m = plan.voxel_m;
     out.automatic_voxel = plan.automatic_voxel;
     for (const FailedScan& failed : plan.failed) {
       out.scans[static_cast<std::size_t>(failed.id)].error = failed.error;

@@ -58,7 +58,8 @@ struct SurveyOutcome {
   bool stopped = false;               ///< asked to stop: what was finished is in the store, the rest is missing here
   std::vector<ScanOutcome> scans;     ///< ascending ids
   std::vector<PairOutcome> pairs;     ///< ascending (source, target)
-  Solution solution;                  ///< of the scans that did not fail
+  PoseGraph graph;                    ///< of the scans that did not fail, all pairs: what was solved in the end
+  Solution solution;                  ///< of that graph
   std::vector<std::string> warnings;  ///< in a fixed order
   std::size_t num_screened = 0;       ///< pairs that were glanced at before any was registered
   std::size_t num_made = 0;           ///< products computed in this run

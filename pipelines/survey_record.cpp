@@ -43,19 +43,29 @@ std::string settings_text(Settings settings) {
 
 }  // namespace
 
-report::SurveyRecord record_of(const Job& job, SurveyOutcome outcome) {
-  report::SurveyRecord record;
+MeasuredSurvey measured_of(const Job& job, const SurveyOutcome& outcome, const std::vector<std::string>& of_listing) {
+  MeasuredSurvey measured;
   const std::filesystem::path first = std::filesystem::absolute(job.inputs.front()).lexically_normal();
-  record.title = (first.has_filename() ? first : first.parent_path()).filename().string();
-  record.voxel_m = outcome.voxel_m;
-  for (const ScanOutcome& scan : outcome.scans) record.scans.push_back(record_of_scan(scan, outcome.voxel_m));
-  record.solution = std::move(outcome.solution);
+  measured.title = (first.has_filename() ? first : first.parent_path()).filename().string();
+  measured.graph = outcome.graph;
+  for (const ScanOutcome& scan : outcome.scans) measured.scans.push_back(record_of_scan(scan, outcome.voxel_m));
+  measured.warnings = of_listing;
+  measured.warnings.insert(measured.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
+  return measured;
+}
+
+report::SurveyRecord record_of(const Job& job, const MeasuredSurvey& measured, Solution solution) {
+  report::SurveyRecord record;
+  record.title = measured.title;
+  record.voxel_m = measured.graph.voxel_m;
+  record.scans = measured.scans;
+  record.solution = std::move(solution);
   record.settings_yaml = settings_text(job.settings);
   record.versions = {{"isthmus", kVersion},
                      {"code", kPairVersion},
                      {"compiler", fmt::format("gcc {}", __VERSION__)},
                      {"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)}};
-  record.warnings = std::move(outcome.warnings);
+  record.warnings = measured.warnings;
   report::judge_scans(record);
   return record;
 }

@@ -131,6 +131,8 @@ std::string html_report(const SurveyRecord& record) {
   page += tiles(record, c);
   const std::string missing = missing_section(record);
   if (!missing.empty()) page += "<h2>Not joined</h2>" + missing;
+  const std::string control = control_section(record);
+  if (!control.empty()) page += "<h2>Control</h2>" + control;
   page += maps(record) + view_section(record) + pairs_section(record) + links_section(record, c);
   page += "<h2>Scans</h2><div class=\"scroll\">" + scan_table(record) + "</div>";
   page += warnings_section(record) + run_section(record);

@@ -171,6 +171,41 @@ std::string scan_table(const SurveyRecord& record) {
   return out + "</tbody></table>";
 }
 
+std::string control_section(const SurveyRecord& record) {
+  if (record.solution.control.empty()) return {};
+  std::string frames;
+  for (std::size_t c = 0; c < record.solution.components.size(); ++c) {
+    const auto& world = record.solution.components[c].georeference;
+    if (!world) continue;
+    const Eigen::Vector3d& shift = world->shift_m;
+    frames += world->levelled_only
+                  ? fmt::format("<p>Part {} is levelled; its place and heading are its anchor&#39;s.</p>", c)
+                  : fmt::format(
+                        "<p>Part {} stands in the frame of the control. Datum shift {:.0f} / {:.0f} / {:.0f} m: solved "
+                        "coordinates plus the shift are world coordinates; poses.txt holds the sum.</p>",
+                        c, shift.x(), shift.y(), shift.z());
+  }
+  if (frames.empty()) frames = "<p>No part could be placed in the frame of the control.</p>";
+  std::string out = frames + "<div class=\"scroll\"><table class=\"sortable\" id=\"control\">";
+  out += header({{"name", ""},
+                 {"scan", ""},
+                 {"used", "Gross errors are not used"},
+                 {"off before", "With the survey fitted to the control as a rigid whole"},
+                 {"off after", "With links and control solved together"},
+                 {"tilt or turn", "After, of level scans and known poses"},
+                 {"why not", ""}});
+  out += "<tbody>";
+  for (const ControlResult& r : record.solution.control) {
+    out += fmt::format("<tr><td>{}</td>", escaped(r.name)) + name_cell(record, r.scan);
+    out += fmt::format("<td><b class=\"pill {}\">{}</b></td>", r.used ? "accepted" : "rejected", r.used ? "yes" : "no");
+    out += r.before ? number_cell(r.before->norm(), metres(r.before->norm())) : empty_cell();
+    out += r.after ? number_cell(r.after->norm(), metres(r.after->norm())) : empty_cell();
+    out += r.after_rad ? number_cell(*r.after_rad, degrees(*r.after_rad)) : empty_cell();
+    out += fmt::format("<td class=\"why\">{}</td></tr>\n", escaped(r.reason));
+  }
+  return out + "</tbody></table></div>";
+}
+
 std::string missing_section(const SurveyRecord& record) {
   std::string items;
   for (const ScanRecord& scan : record.scans)

@@ -53,7 +53,7 @@ std::string pose_graph_g2o(const SurveyRecord& record) {
     out += fmt::format("EDGE_SE3:QUAT {} {}", l.link.target, l.link.source);
     append_pose(out, target_from_source_in_scans(record, l.link));
     const Eigen::Vector3d& origin = find_scan(record, l.link.source)->local_origin_in_scan;
-    const Matrix6d information = g2o_information(information_in_scan(l.link.result.information, origin));
+    const Matrix6d information = g2o_information(information_in_scan(l.information_used, origin));
     for (int row = 0; row < 6; ++row)
       for (int column = row; column < 6; ++column) append(out, information(row, column));
     out += '\n';

@@ -54,6 +54,7 @@ Json components_json(const SurveyRecord& record) {
   for (std::size_t k = 0; k < record.solution.components.size(); ++k) {
     const Component& component = record.solution.components[k];
     Json entry = {{"anchor", component.anchor}, {"scans", component.scans}};
+    add_frame(component, entry);
     entry["nearest_to_joining"] = best_open_link_json(record, static_cast<int>(k));
     out.push_back(std::move(entry));
   }
@@ -95,7 +96,9 @@ Json off_poses_json(const std::optional<LinkError>& error) {
 
 Json link_json(const SurveyRecord& record, const SolvedLink& l, const LoopClosures& loops) {
   const PairResult& r = l.link.result;
-  const auto measured = [&](double value) { return r.target_from_source ? number(value) : Json(nullptr); };
+  const auto measured = [&](double value) {
+    return r.target_from_source && l.link.by_hand != ByHand::added ? number(value) : Json(nullptr);
+  };
   Json out = {{"source", l.link.source}, {"target", l.link.target}};
   out["verdict"] = word(r.verdict);
   out["verdict_of_pair"] = word(l.measured);
@@ -110,8 +113,10 @@ Json link_json(const SurveyRecord& record, const SolvedLink& l, const LoopClosur
     out[name] = number(evidence_term(r, name));
   out["loop"] = loop_json(loops.of(l.link));
   out["off_poses"] = off_poses_json(l.after);
+  out["off_poses_before"] = off_poses_json(l.before);
   out["in_loop"] = l.in_loop;
   out["guided"] = l.link.guided;
+  out["by_hand"] = word(l.link.by_hand);
   const bool placed = r.target_from_source && find_scan(record, l.link.source) != nullptr &&
                       find_scan(record, l.link.target) != nullptr;
   out["target_from_source"] = placed ? rows_of(target_from_source_in_scans(record, l.link)) : Json(nullptr);
@@ -150,6 +155,8 @@ std::string report_json(const SurveyRecord& record) {
   json["histograms"]["overlap"] = bins_json(overlap_bins(record), 1.0 / kNumBins);
   json["histograms"]["rms_m"] = bins_json(residual_bins(record), record.voxel_m / kNumBins);
   json["histograms"]["loop_error_m"] = bins_json(loop_bins(record), record.voxel_m / kNumBins);
+  json["edits"] = edits_json(record);
+  json["control"] = control_json(record);
   json["warnings"] = warnings_json(record);
   json["settings"] = record.settings_yaml;
   json["versions"] = versions_json(record);

@@ -10,7 +10,9 @@ Json components_json(const SurveyRecord& record) {
   for (const Component& component : record.solution.components) {
     Json names = Json::array();
     for (const int id : component.scans) names.push_back(find_scan(record, id)->name);
-    out.push_back({{"anchor", find_scan(record, component.anchor)->name}, {"scans", std::move(names)}});
+    Json one = {{"anchor", find_scan(record, component.anchor)->name}, {"scans", std::move(names)}};
+    add_frame(component, one);
+    out.push_back(std::move(one));
   }
   return out;
 }
@@ -48,6 +50,8 @@ std::string run_json(const SurveyRecord& record) {
   json["voxel_m"] = record.voxel_m;
   json["counts"] = counts_json(count(record));
   json["components"] = components_json(record);
+  json["edits"] = edits_json(record);
+  if (!record.solution.control.empty()) json["control"] = control_json(record);
   json["warnings"] = warnings_json(record);
   json["run"] = run_section(record.run);
   return text_of(json);

@@ -46,6 +46,18 @@ const char* word(StationKind kind) {
   return "unknown";
 }
 
+const char* word(ByHand by_hand) {
+  switch (by_hand) {
+    case ByHand::nothing:
+      return "";
+    case ByHand::taken_out:
+      return "taken out";
+    case ByHand::added:
+      return "added";
+  }
+  return "unknown";
+}
+
 const ScanRecord* find_scan(const SurveyRecord& record, int id) {
   const auto at = std::lower_bound(record.scans.begin(), record.scans.end(), id,
                                    [](const ScanRecord& s, int key) { return s.id < key; });
@@ -89,9 +101,21 @@ void judge_scans(SurveyRecord& record) {
   }
 }
 
+/// A part that was only levelled stays where its anchor's coordinates put it.
+static Eigen::Vector3d level_origin(const SurveyRecord& record, const Component& component) {
+  if (!component.georeference->levelled_only) return Eigen::Vector3d::Zero();
+  return find_scan(record, component.anchor)->local_origin_in_scan;
+}
+
 Transform component_from_scan(const SurveyRecord& record, int id) {
   const PlacedScan& placed = *record.solution.find(id);
-  const int anchor_id = record.solution.components[placed.component].anchor;
+  const Component& component = record.solution.components[placed.component];
+  const int anchor_id = component.anchor;
+  if (component.georeference) {
+    const Georeference& world = *component.georeference;
+    return Eigen::Translation3d(world.shift_m + level_origin(record, component)) * world.shifted_from_component *
+           placed.component_from_local * Eigen::Translation3d(-find_scan(record, id)->local_origin_in_scan);
+  }
   if (id == anchor_id) return Transform::Identity();
   return Eigen::Translation3d(find_scan(record, anchor_id)->local_origin_in_scan) * placed.component_from_local *
          Eigen::Translation3d(-find_scan(record, id)->local_origin_in_scan);

@@ -41,6 +41,12 @@ struct ScanRecord {
   std::vector<std::string> notes;
   Seconds seconds;
   ViewCloud view;  ///< for the 3D view; may be empty
+
+  template <class F>
+  void fields(F&& f) {
+    f(id), f(name), f(status), f(reason), f(format), f(points), f(num_read), f(num_dropped), f(voxel_m), f(spacing_m);
+    f(station_kind), f(station), f(centre), f(radius_m), f(local_origin_in_scan), f(notes), f(seconds);
+  }
 };
 
 /// What differs from run to run: never in a deterministic output.
@@ -77,6 +83,7 @@ void judge_scans(SurveyRecord& record);
 const char* word(ScanStatus status);  ///< "placed", "unplaced", "failed"
 const char* word(Verdict verdict);    ///< as in links.csv: "accepted", "ambiguous", "rejected", "failed"
 const char* word(StationKind kind);   ///< "unknown", "origin", "estimated"
+const char* word(ByHand by_hand);     ///< "", "taken out", "added"
 
 const ScanRecord* find_scan(const SurveyRecord& record, int id);
 

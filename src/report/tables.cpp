@@ -1,6 +1,7 @@
 #include "report/tables.h"
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 #include <vector>
 
@@ -58,6 +59,13 @@ void add_transform(CsvTable& csv, const std::optional<Transform>& t) {
     }
 }
 
+void add_error(CsvTable& csv, const std::optional<LinkError>& error) {
+  if (error)
+    csv.add(error->rotation_rad * kDegPerRad).add(error->translation_m);
+  else
+    csv.skip().skip();
+}
+
 const auto& evidence_of(const PairResult& r) { return r.evidence; }
 const auto& counts_of(const PairResult& r) { return r.counts; }
 
@@ -111,6 +119,9 @@ std::string links_csv(const SurveyRecord& record) {
                            "probability_with_loops",
                            "error_deg",
                            "error_m",
+                           "error_before_deg",
+                           "error_before_m",
+                           "by_hand",
                            "overlap_of_source",
                            "overlap_of_target",
                            "r00",
@@ -134,17 +145,17 @@ std::string links_csv(const SurveyRecord& record) {
     const ScanRecord* source = find_scan(record, l.link.source);
     const ScanRecord* target = find_scan(record, l.link.target);
     csv.add(l.link.source).add(l.link.target).add(word(r.verdict)).add(r.reason).add(r.probability);
-    if (r.target_from_source)
+    const bool measured = r.target_from_source && l.link.by_hand != ByHand::added;
+    if (measured)
       csv.add(r.overlap).add(r.rms_m);
     else
       csv.skip().skip();
     csv.add(source != nullptr ? source->name : "").add(target != nullptr ? target->name : "");
     csv.add(word(l.measured)).add(l.link.guided ? 1 : 0).add(l.in_loop ? 1 : 0).add(l.probability);
-    if (l.after)
-      csv.add(l.after->rotation_rad * kDegPerRad).add(l.after->translation_m);
-    else
-      csv.skip().skip();
-    if (r.target_from_source)
+    add_error(csv, l.after);
+    add_error(csv, l.before);
+    csv.add(word(l.link.by_hand));
+    if (measured)
       csv.add(r.overlap_of_source).add(r.overlap_of_target);
     else
       csv.skip().skip();
@@ -152,6 +163,27 @@ std::string links_csv(const SurveyRecord& record) {
     add_transform(csv, known ? std::optional(target_from_source_in_scans(record, l.link)) : std::nullopt);
     add_terms(csv, evidence, r.evidence);
     add_terms(csv, counts, r.counts);
+    csv.end_row();
+  }
+  return csv.text();
+}
+
+std::string covariances_csv(const SurveyRecord& record) {
+  CsvTable csv;
+  for (const char* name : {"id", "name", "component", "centre_x", "centre_y", "centre_z"}) csv.add(name);
+  constexpr std::array<const char*, 6> kAxes = {"x", "y", "z", "rx", "ry", "rz"};
+  for (std::size_t row = 0; row < kAxes.size(); ++row)
+    for (std::size_t column = row; column < kAxes.size(); ++column)
+      csv.add(fmt::format("c_{}_{}", kAxes[row], kAxes[column]));
+  csv.end_row();
+  for (const ScanRecord& scan : record.scans) {
+    const PlacedScan* placed = record.solution.find(scan.id);
+    if (placed == nullptr || !placed->covariance) continue;
+    const Eigen::Vector3d centre = component_from_scan(record, scan.id) * (scan.centre + scan.local_origin_in_scan);
+    csv.add(scan.id).add(scan.name).add(placed->component);
+    for (int k = 0; k < 3; ++k) csv.add_exact(centre[k]);
+    for (int row = 0; row < 6; ++row)
+      for (int column = row; column < 6; ++column) csv.add((*placed->covariance)(row, column));
     csv.end_row();
   }
   return csv.text();

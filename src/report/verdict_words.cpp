@@ -50,16 +50,35 @@ std::string links_sentence(const SurveyRecord& record, const SurveyCounts& c) {
   return text;
 }
 
+std::string pair_name(const SurveyRecord& record, const SolvedLink& l) {
+  return short_name(find_scan(record, l.link.source)->name, 20) + "–" +
+         short_name(find_scan(record, l.link.target)->name, 20);
+}
+
 /// Accepted links that nothing else confirms are the ones to check in the field.
 std::string bridges_sentence(const SurveyRecord& record) {
   std::vector<std::string> names;
   for (const SolvedLink& l : record.solution.links)
     if (l.link.result.verdict == Verdict::accepted && !l.in_loop && !l.link.guided)
-      names.push_back(short_name(find_scan(record, l.link.source)->name, 20) + "–" +
-                      short_name(find_scan(record, l.link.target)->name, 20));
+      names.push_back(pair_name(record, l));
   if (names.empty()) return {};
-  return fmt::format("No loop checks {}: {}.", names.size() == 1 ? "one link that a part hangs on" : "these links",
+  return fmt::format("No loop checks {}: {}. ", names.size() == 1 ? "one link that a part hangs on" : "these links",
                      list_of(names));
+}
+
+/// What a person changed, and what the loops say to that.
+std::string edits_sentence(const SurveyRecord& record) {
+  std::vector<std::string> out, added, refused;
+  for (const SolvedLink& l : record.solution.links) {
+    if (l.link.by_hand == ByHand::taken_out) out.push_back(pair_name(record, l));
+    if (l.link.by_hand != ByHand::added) continue;
+    (l.link.result.verdict == Verdict::accepted ? added : refused).push_back(pair_name(record, l));
+  }
+  std::string text;
+  if (!out.empty()) text += fmt::format("Taken out by hand: {}. ", list_of(out));
+  if (!added.empty()) text += fmt::format("Added by hand: {}. ", list_of(added));
+  if (!refused.empty()) text += fmt::format("Added by hand, but refused: {}. ", list_of(refused));
+  return text;
 }
 
 }  // namespace
@@ -75,7 +94,10 @@ Headline headline(const SurveyCounts& c) {
 }
 
 std::string summary_text(const SurveyRecord& record, const SurveyCounts& c) {
-  return missing_sentence(record, c) + links_sentence(record, c) + bridges_sentence(record);
+  std::string text =
+      missing_sentence(record, c) + links_sentence(record, c) + bridges_sentence(record) + edits_sentence(record);
+  if (!text.empty()) text.pop_back();  // the space behind the last sentence
+  return text;
 }
 
 double median_of(std::vector<double> values) {

@@ -15,7 +15,7 @@ struct Headline {
 };
 Headline headline(const SurveyCounts& counts);
 
-/// What is not joined, how the links came out, which of them nothing confirms. Plain text.
+/// What is not joined, how the links came out, which of them nothing confirms, what was changed by hand. Plain text.
 std::string summary_text(const SurveyRecord& record, const SurveyCounts& counts);
 
 /// 0 for none.

@@ -19,10 +19,15 @@ Result<void> write_outputs(const SurveyRecord& record, const std::filesystem::pa
   std::filesystem::create_directories(folder, code);
   if (code)
     return fail("cannot create the folder: " + code.message(), folder.string(), "check permissions and free space");
-  const std::pair<const char*, std::string (*)(const SurveyRecord&)> files[] = {
-      {"scans.csv", scans_csv},     {"poses.txt", poses_text},    {"pose_graph.g2o", pose_graph_g2o},
-      {"links.csv", links_csv},     {"timings.csv", timings_csv}, {"report.html", html_report},
-      {"report.json", report_json}, {"run.json", run_json}};
+  const std::pair<const char*, std::string (*)(const SurveyRecord&)> files[] = {{"scans.csv", scans_csv},
+                                                                                {"poses.txt", poses_text},
+                                                                                {"pose_graph.g2o", pose_graph_g2o},
+                                                                                {"links.csv", links_csv},
+                                                                                {"covariances.csv", covariances_csv},
+                                                                                {"timings.csv", timings_csv},
+                                                                                {"report.html", html_report},
+                                                                                {"report.json", report_json},
+                                                                                {"run.json", run_json}};
   for (const auto& [name, content_of] : files)
     if (Result<void> written = write_file_atomically(folder / name, content_of(record)); !written) return written;
   return {};

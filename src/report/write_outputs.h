@@ -8,7 +8,8 @@
 
 namespace isthmus::report {
 
-/// Writes scans.csv, poses.txt, pose_graph.g2o, links.csv, timings.csv, report.html, report.json and run.json into
+/// Writes scans.csv, poses.txt, pose_graph.g2o, links.csv, covariances.csv, timings.csv, report.html, report.json and
+/// run.json into
 /// `folder` (created if missing), each by rename; run.json last: where it is, the others are.
 Result<void> write_outputs(const SurveyRecord& record, const std::filesystem::path& folder);
 

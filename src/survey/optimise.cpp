@@ -86,6 +86,104 @@ ceres::Solver::Options ceres_options() {
   return options;
 }
 
+/// Whitened position of a point against the known one.
+struct PointResidual {
+  ControlTerm term;
+
+  template <class T>
+  bool operator()(const T* t, const T* q, T* out) const {
+    using V = Eigen::Matrix<T, 3, 1>;
+    const Eigen::Map<const V> translation(t);
+    const Eigen::Map<const Eigen::Quaternion<T>> rotation(q);
+    const V p = rotation * term.p_in_node.cast<T>() + translation - term.p_in_shifted.cast<T>();
+    for (int k = 0; k < 3; ++k) out[k] = p[k] / term.sigma_m[k];
+    return true;
+  }
+};
+
+/// Whitened tilts of a level scan.
+struct LevelResidual {
+  double sigma_rad;
+
+  template <class T>
+  bool operator()(const T* q, T* out) const {
+    const Eigen::Map<const Eigen::Quaternion<T>> rotation(q);
+    const Eigen::Matrix<T, 3, 1> up = rotation * Eigen::Matrix<T, 3, 1>(T(0), T(0), T(1));
+    out[0] = up[0] / sigma_rad;
+    out[1] = up[1] / sigma_rad;
+    return true;
+  }
+};
+
+/// Whitened distance from a known pose.
+struct PoseResidual {
+  ControlTerm term;
+
+  template <class T>
+  bool operator()(const T* t, const T* q, T* out) const {
+    using V = Eigen::Matrix<T, 3, 1>;
+    const Eigen::Map<const V> translation(t);
+    const Eigen::Map<const Eigen::Quaternion<T>> rotation(q);
+    const V off = translation - term.shifted_from_node.translation().cast<T>();
+    const Eigen::Quaternion<T> turn =
+        Eigen::Quaterniond(term.shifted_from_node.linear()).conjugate().cast<T>() * rotation;
+    const T wxyz[4] = {turn.w(), turn.x(), turn.y(), turn.z()};
+    T angle_axis[3];
+    ceres::QuaternionToAngleAxis(wxyz, angle_axis);
+    for (int k = 0; k < 3; ++k) {
+      out[k] = off[k] / term.sigma_m[k];
+      out[3 + k] = angle_axis[k] / term.sigma_rad;
+    }
+    return true;
+  }
+};
+
+/// Keeps the heading: an axis of the scan that is level at the start does not turn about the vertical.
+struct HeadingResidual {
+  Eigen::Vector3d axis_in_node, across;
+
+  template <class T>
+  bool operator()(const T* q, T* out) const {
+    constexpr double kSigmaRad = 1e-6;  // far below what any scan tells
+    const Eigen::Map<const Eigen::Quaternion<T>> rotation(q);
+    const Eigen::Matrix<T, 3, 1> turned = rotation * axis_in_node.cast<T>();
+    out[0] = turned.dot(across.cast<T>()) / kSigmaRad;
+    return true;
+  }
+};
+
+void add_term(ceres::Problem& problem, const ControlTerm& term, Pose& pose) {
+  if (term.kind == ControlKind::point) {
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PointResidual, 3, 3, 4>(new PointResidual{term}), nullptr,
+                             pose.t.data(), pose.q.data());
+  } else if (term.kind == ControlKind::pose) {
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PoseResidual, 6, 3, 4>(new PoseResidual{term}), nullptr,
+                             pose.t.data(), pose.q.data());
+  } else {
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<LevelResidual, 2, 4>(new LevelResidual{term.sigma_rad}),
+                             nullptr, pose.q.data());
+  }
+}
+
+void hold_place_and_heading(ceres::Problem& problem, Pose& pose) {
+  problem.SetParameterBlockConstant(pose.t.data());
+  const Eigen::Quaterniond q(pose.q[3], pose.q[0], pose.q[1], pose.q[2]);
+  const Eigen::Vector3d ahead = q.inverse() * Eigen::Vector3d::UnitX();
+  problem.AddResidualBlock(
+      new ceres::AutoDiffCostFunction<HeadingResidual, 1, 4>(new HeadingResidual{ahead, Eigen::Vector3d::UnitY()}),
+      nullptr, pose.q.data());
+}
+
+void add_link(ceres::Problem& problem, const Measurement& m, double weight, std::vector<Pose>& poses) {
+  const Transform& measured = m.target_from_source.b_from_a;
+  auto* cost = new ceres::AutoDiffCostFunction<LinkResidual, 6, 3, 4, 3, 4>(
+      new LinkResidual{Eigen::Quaterniond(measured.linear()).normalized(), measured.translation(),
+                       std::sqrt(weight) * m.sqrt_information});
+  Pose& target = poses[m.target];
+  Pose& source = poses[m.source];
+  problem.AddResidualBlock(cost, nullptr, target.t.data(), target.q.data(), source.t.data(), source.q.data());
+}
+
 /// One weighted least-squares solve; the text is empty when the optimiser is content.
 std::string solve_weighted(std::vector<Pose>& poses, std::span<const Measurement> measurements,
                            const std::vector<double>& weights, const std::vector<int>& fixed) {
@@ -95,19 +193,8 @@ std::string solve_weighted(std::vector<Pose>& poses, std::span<const Measurement
     problem.AddParameterBlock(pose.t.data(), 3);
     problem.AddParameterBlock(pose.q.data(), 4, manifold);
   }
-  std::vector<char> touched(poses.size(), 0);
-  for (std::size_t e = 0; e < measurements.size(); ++e) {
-    if (weights[e] <= 0) continue;
-    const Measurement& m = measurements[e];
-    const Transform& measured = m.target_from_source.b_from_a;
-    auto* cost = new ceres::AutoDiffCostFunction<LinkResidual, 6, 3, 4, 3, 4>(
-        new LinkResidual{Eigen::Quaterniond(measured.linear()).normalized(), measured.translation(),
-                         std::sqrt(weights[e]) * m.sqrt_information});
-    Pose& target = poses[m.target];
-    Pose& source = poses[m.source];
-    problem.AddResidualBlock(cost, nullptr, target.t.data(), target.q.data(), source.t.data(), source.q.data());
-    touched[m.target] = touched[m.source] = 1;
-  }
+  for (std::size_t e = 0; e < measurements.size(); ++e)
+    if (weights[e] > 0) add_link(problem, measurements[e], weights[e], poses);
   for (const int node : fixed) {
     problem.SetParameterBlockConstant(poses[node].t.data());
     problem.SetParameterBlockConstant(poses[node].q.data());
@@ -170,6 +257,33 @@ OptimisedPoses optimise(std::vector<Transform> root_from_node, std::span<const M
   if (mu > 0) out.problem = solve_weighted(poses, measurements, out.weights, fixed);
   for (std::size_t i = 0; i < poses.size(); ++i) root_from_node[i] = transform_of(poses[i]);
   out.root_from_node = std::move(root_from_node);
+  return out;
+}
+
+OptimisedPoses optimise_with_control(std::vector<Transform> shifted_from_node,
+                                     std::span<const Measurement> measurements, std::span<const ControlTerm> terms,
+                                     int held) {
+  std::vector<Pose> poses = poses_of(shifted_from_node);
+  ceres::Problem problem;
+  ceres::EigenQuaternionManifold* const manifold = new ceres::EigenQuaternionManifold;  // owned by the problem
+  std::vector<char> touched(poses.size(), 0);
+  for (const Measurement& m : measurements) touched[m.source] = touched[m.target] = 1;
+  for (const ControlTerm& term : terms) touched[term.node] = 1;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!touched[i]) continue;
+    problem.AddParameterBlock(poses[i].t.data(), 3);
+    problem.AddParameterBlock(poses[i].q.data(), 4, manifold);
+  }
+  for (const Measurement& m : measurements) add_link(problem, m, 1.0, poses);
+  for (const ControlTerm& term : terms) add_term(problem, term, poses[term.node]);
+  if (held >= 0) hold_place_and_heading(problem, poses[held]);
+  OptimisedPoses out;
+  ceres::Solver::Summary summary;
+  ceres::Solve(ceres_options(), &problem, &summary);
+  if (!summary.IsSolutionUsable()) out.problem = summary.BriefReport();
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (touched[i]) shifted_from_node[i] = transform_of(poses[i]);
+  out.root_from_node = std::move(shifted_from_node);
   return out;
 }
 

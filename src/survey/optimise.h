@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "survey/control_fit.h"
 #include "survey/link_model.h"
 
 namespace isthmus::survey {
@@ -20,6 +21,12 @@ struct OptimisedPoses {
 /// surrogate). `fixed` holds one node per part, whose pose stays as it is. Single-threaded, deterministic.
 OptimisedPoses optimise(std::vector<Transform> root_from_node, std::span<const Measurement> measurements,
                         const std::vector<int>& fixed, double chi2_limit);
+
+/// Least squares over links and control together, all of them believed; the weights stay empty. Poses are in the
+/// shifted world. `held` (or -1) is a node that keeps its place and heading: where only levels are known.
+OptimisedPoses optimise_with_control(std::vector<Transform> shifted_from_node,
+                                     std::span<const Measurement> measurements, std::span<const ControlTerm> terms,
+                                     int held);
 
 /// Squared whitened residual of a measurement at given poses.
 double chi2_at(const Measurement& m, const std::vector<Transform>& root_from_node);

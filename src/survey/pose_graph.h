@@ -12,6 +12,7 @@
 #include "config/option_table.h"
 #include "geometry/transform.h"
 #include "pairwise/pair_result.h"
+#include "survey/control.h"
 
 namespace isthmus {
 
@@ -21,7 +22,15 @@ struct GraphScan {
   std::string name;                                  ///< for reasons; the id is used where it is empty
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< centroid of its points, local frame
   double radius_m = 0;                               ///< typical distance of its points from the centre; 0 = unknown
+
+  template <class F>
+  void fields(F&& f) {
+    f(id), f(name), f(centre), f(radius_m);
+  }
 };
+
+/// What a person did to a link.
+enum class ByHand : std::uint8_t { nothing, taken_out, added };
 
 /// One tried pair.
 struct Link {
@@ -33,12 +42,23 @@ struct Link {
   bool guided = false;
   /// Why the survey around it forbids the link, whatever the pair says; empty if nothing does. It is rejected.
   std::string refuted;
+  ByHand by_hand = ByHand::nothing;  ///< a link that was taken out is not used; see hand_links.h
+
+  template <class F>
+  void fields(F&& f) {
+    f(source), f(target), f(result), f(guided), f(refuted), f(by_hand);
+  }
 };
 
 struct PoseGraph {
   double voxel_m = 0;            ///< sampling of the scans; the unit of what counts as agreement; > 0
   std::vector<GraphScan> scans;  ///< every scan that was read, in any order
   std::vector<Link> links;       ///< every pair tried, in any order
+
+  template <class F>
+  void fields(F&& f) {
+    f(voxel_m), f(scans), f(links);
+  }
 };
 
 struct SolveOptions {
@@ -68,6 +88,9 @@ struct SolvedLink {
   /// That the link is right, given the loops: the pair stage's probability, raised for accepted links that a loop
   /// confirms.
   double probability = 0;
+  /// As `result.information`, but as the solver weighs the link: noise floor and ceiling included. Zero if the link
+  /// cannot be used.
+  Matrix6d information_used = Matrix6d::Zero();
 };
 
 struct PlacedScan {
@@ -77,18 +100,23 @@ struct PlacedScan {
   std::optional<double>
       sigma_m;  ///< standard deviation of the position of its centre relative to the anchor, worst axis
   std::optional<double> sigma_rad;  ///< likewise of the rotation
+  /// Of the position of the scan's centre and of a rotation vector about it, both along the component's axes, relative
+  /// to the anchor. Absent where sigma_m is.
+  std::optional<Matrix6d> covariance;
 };
 
 /// Scans joined by accepted links. Components are numbered by size, largest first, then by smallest id.
 struct Component {
   int anchor = 0;          ///< id of the scan with most accepted links, then the smallest id; its pose is the identity
   std::vector<int> scans;  ///< ids, ascending
+  std::optional<Georeference> georeference;
 };
 
 struct Solution {
-  std::vector<Component> components;  ///< every scan of the graph is in one, if only its own
-  std::vector<PlacedScan> scans;      ///< ascending ids; a scan alone in its component has the identity
-  std::vector<SolvedLink> links;      ///< ascending (source, target)
+  std::vector<Component> components;   ///< every scan of the graph is in one, if only its own
+  std::vector<PlacedScan> scans;       ///< ascending ids; a scan alone in its component has the identity
+  std::vector<SolvedLink> links;       ///< ascending (source, target)
+  std::vector<ControlResult> control;  ///< in the order of the control: points, poses, levelled scans
   std::vector<std::string> warnings;
 
   [[nodiscard]] const PlacedScan* find(int id) const;
@@ -100,6 +128,7 @@ std::optional<Transform> predicted_target_from_source(const Solution& solution, 
 /// Lets links judge each other (loops reject accepted ones and confirm ambiguous ones), optimises the poses robustly
 /// and finds the components. Method and sources: docs/stages/pose_graph.md. Runs in one thread; the same bytes for any
 /// order of scans and links. Never fails: a link that cannot be used is returned with verdict failed and the reason.
-Solution solve(const PoseGraph& graph, const SolveOptions& options);
+/// Control does not judge links: what the loops believe is fitted to it; see docs/stages/control.md.
+Solution solve(const PoseGraph& graph, const SolveOptions& options, const Control& control = {});
 
 }  // namespace isthmus

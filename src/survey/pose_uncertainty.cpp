@@ -48,7 +48,7 @@ std::vector<std::optional<PoseSigma>> pose_sigmas(const std::vector<Transform>& 
   for (std::size_t i = 0; i < slot.size(); ++i) {
     if (slot[i] < 0) continue;
     const Matrix6d c = covariance.block<6, 6>(6 * slot[i], 6 * slot[i]);
-    out[i] = PoseSigma{largest_sigma(c.topLeftCorner<3, 3>()), largest_sigma(c.bottomRightCorner<3, 3>())};
+    out[i] = PoseSigma{largest_sigma(c.topLeftCorner<3, 3>()), largest_sigma(c.bottomRightCorner<3, 3>()), c};
   }
   return out;
 }

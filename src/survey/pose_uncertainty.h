@@ -13,6 +13,7 @@ namespace isthmus::survey {
 struct PoseSigma {
   double translation_m = 0;
   double rotation_rad = 0;
+  Matrix6d covariance = Matrix6d::Zero();  ///< of the right perturbation (translation, rotation vector), node's frame
 };
 
 /// Inverts the normal matrix of the measurements at the solution (dense: meant for some hundred nodes). Absent for

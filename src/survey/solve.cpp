@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "survey/consensus.h"
+#include "survey/control_fit.h"
 #include "survey/optimise.h"
 #include "survey/pose_graph.h"
 #include "survey/pose_uncertainty.h"
@@ -35,6 +36,8 @@ struct Solver {
   std::vector<Measurement> measurements;  // of links measured accepted or ambiguous
   std::vector<int> tree;                  // measurements that most loops agree with, ascending
   std::vector<Transform> root_from_node;  // solved, centred frames
+  std::vector<char> undecided;            // per measurement: rejected with others, any of which may be the wrong one
+  std::vector<char> doubted;              // per measurement: rejected because no loop could judge it
   std::vector<std::string> warnings;
 
   [[nodiscard]] int num_nodes() const { return static_cast<int>(scans.size()); }
@@ -73,7 +76,7 @@ std::string error_text(double rotation_rad, double translation_m) {
 /// Content order, so that the order in which links arrive cannot show.
 bool link_less(const SolvedLink& a, const SolvedLink& b) {
   const auto key = [](const SolvedLink& l) {
-    return std::tuple(l.link.source, l.link.target, l.link.guided, -l.link.result.probability,
+    return std::tuple(l.link.source, l.link.target, l.link.by_hand, l.link.guided, -l.link.result.probability,
                       l.link.result.target_from_source.has_value());
   };
   if (key(a) != key(b)) return key(a) < key(b);
@@ -83,16 +86,27 @@ bool link_less(const SolvedLink& a, const SolvedLink& b) {
   return std::lexicographical_compare(x.data(), x.data() + x.size(), y.data(), y.data() + y.size());
 }
 
+/// d_centred = Ad(-centre) d_local
+Matrix6d information_in_local(const Measurement& m, const GraphScan& source) {
+  const Matrix6d whitened = m.sqrt_information * adjoint(Transform(Eigen::Translation3d(-source.centre)));
+  return whitened.transpose() * whitened;
+}
+
 Solver prepared(const PoseGraph& graph, const SolveOptions& options) {
-  Solver s{options, graph.voxel_m, graph.scans, {}, {}, {}, {}, {}};
+  Solver s{options, graph.voxel_m, graph.scans, {}, {}, {}, {}, {}, {}, {}};
   std::sort(s.scans.begin(), s.scans.end(), [](const GraphScan& a, const GraphScan& b) { return a.id < b.id; });
   std::map<int, int> node_of_id;
   for (int i = 0; i < s.num_nodes(); ++i) node_of_id.emplace(s.scans[i].id, i);
   for (const Link& link : graph.links)
-    s.links.push_back({link, link.result.verdict, {}, {}, false, link.result.probability});
+    s.links.push_back({link, link.result.verdict, {}, {}, false, link.result.probability, Matrix6d::Zero()});
   std::stable_sort(s.links.begin(), s.links.end(), link_less);
   for (std::size_t k = 0; k < s.links.size(); ++k) {
     PairResult& r = s.links[k].link.result;
+    if (s.links[k].link.by_hand == ByHand::taken_out) {
+      r.verdict = Verdict::rejected;
+      r.reason = fmt::format("taken out by hand ({} before: {})", to_string(s.links[k].measured), r.reason);
+      continue;
+    }
     if (!s.links[k].link.refuted.empty()) {
       r.verdict = Verdict::rejected;
       r.reason = s.links[k].link.refuted;
@@ -115,7 +129,10 @@ Solver prepared(const PoseGraph& graph, const SolveOptions& options) {
     m.measurement.link = static_cast<int>(k);
     m.measurement.source = source->second;
     m.measurement.target = target->second;
+    s.links[k].information_used = information_in_local(m.measurement, s.scans[source->second]);
     s.measurements.push_back(m.measurement);
+    s.undecided.push_back(0);
+    s.doubted.push_back(0);
   }
   return s;
 }
@@ -142,6 +159,7 @@ void let_links_judge_each_other(Solver& s) {
             r.undecided ? fmt::format("the loop {} misses by {}, and nothing else tells which of its links is wrong",
                                       loop, error)
                         : fmt::format("disagrees with the loop {} by {}", loop, error));
+    s.undecided[r.measurement] = r.undecided;
     if (r.undecided)
       s.warnings.push_back(fmt::format("the loop {} misses by {}: its least certain links were rejected", loop, error));
   }
@@ -241,6 +259,78 @@ bool promote_confirmed(Solver& s) {
   return !confirmed.empty();
 }
 
+/// What the loops say about the pair stage in this survey: of the accepted links that they could judge, the share that
+/// was wrong, and the share that the pair stage's probabilities made expect.
+struct TrackRecord {
+  double wrong = 0, expected = 0, judged = 0;
+};
+
+TrackRecord track_record(const Solver& s, const std::vector<char>& in_loop) {
+  // A survey without loops tells nothing: this many links that went as expected are assumed beforehand.
+  constexpr double kPrior = 4;
+  TrackRecord record;
+  double expected = 0;
+  for (int e = 0; e < static_cast<int>(s.measurements.size()); ++e) {
+    const Measurement& m = s.measurements[e];
+    if (!m.accepted || !m.votes || s.doubted[e]) continue;
+    const bool refuted = s.verdict(e) == Verdict::rejected;
+    if (!refuted && !in_loop[e]) continue;
+    // Of three links that contradict each other and went together, one is wrong.
+    record.wrong += !refuted ? 0.0 : s.undecided[e] ? 1.0 / 3.0 : 1.0;
+    expected += 1.0 / (1.0 + std::exp(m.log_odds));
+    ++record.judged;
+  }
+  const double share = record.judged > 0 ? expected / record.judged : 0;
+  record.wrong = (record.wrong + kPrior * share) / (record.judged + kPrior);
+  record.expected = share;
+  return record;
+}
+
+/// Accepted links on a loop of accepted links; without `guided`, of those that were not told where to look.
+std::vector<char> on_loops(const Solver& s, bool guided) {
+  std::vector<int> voters = s.with_verdict(Verdict::accepted);
+  std::erase_if(voters, [&](int e) { return !s.measurements[e].votes && !guided; });
+  const std::vector<int> tree = spanning_edges(s.num_nodes(), s.measurements, voters);
+  const SpanningForest forest = forest_of(s.num_nodes(), s.measurements, tree);
+  std::vector<char> in_loop(s.measurements.size(), 0);
+  for (const int e : voters) {
+    if (std::binary_search(tree.begin(), tree.end(), e)) continue;
+    in_loop[e] = 1;
+    for (const int t : tree_path(forest, s.measurements[e].source, s.measurements[e].target)) in_loop[t] = 1;
+  }
+  return in_loop;
+}
+
+/// A link that no loop confirms is worth what the pair stage's word is worth in this survey: where loops refute many
+/// of the links that they can judge, one more that they cannot judge joins nothing. True if any was taken out.
+bool doubt_bridges(Solver& s) {
+  const std::vector<char> in_loop = on_loops(s, false), in_any_loop = on_loops(s, true);
+  const TrackRecord record = track_record(s, in_loop);
+  if (record.judged == 0 || record.wrong <= record.expected) return false;
+  const double scale = std::log((1 - record.wrong) / record.wrong) - std::log((1 - record.expected) / record.expected);
+  bool any = false;
+  for (const int e : s.with_verdict(Verdict::accepted)) {
+    if (in_loop[e] || s.link_of(e).link.by_hand == ByHand::added) continue;
+    if (!s.measurements[e].votes && in_any_loop[e]) continue;  // it joins nothing
+    const double probability = 1.0 / (1.0 + std::exp(-(s.measurements[e].log_odds + scale)));
+    if (probability >= 1.0 - s.options.undecided_wrong_probability) continue;
+    s.judge(
+        e, Verdict::rejected,
+        fmt::format("no loop confirms it, and loops refute {:.0f} % of this survey's links that they can judge: right "
+                    "with {:.2f}, too little to join anything (by itself: {})",
+                    100 * record.wrong, probability, s.link_of(e).link.result.reason));
+    s.link_of(e).probability = probability;
+    s.doubted[e] = 1;
+    any = true;
+  }
+  if (any)
+    s.warnings.push_back(
+        fmt::format("loops refute {:.0f} % of the accepted links that they can judge: links that no loop confirms were "
+                    "not believed",
+                    100 * record.wrong));
+  return any;
+}
+
 LinkError error_at(const Measurement& m, const std::vector<Transform>& root_from_node) {
   const Vector6d d =
       disagreement(m.target_from_source.b_from_a, root_from_node[m.target].inverse() * root_from_node[m.source]);
@@ -249,19 +339,12 @@ LinkError error_at(const Measurement& m, const std::vector<Transform>& root_from
 
 /// Accepted links that lie on a loop of links that were not told where to look.
 void mark_loops(Solver& s) {
-  std::vector<int> voters = s.with_verdict(Verdict::accepted);
-  std::erase_if(voters, [&](int e) { return !s.measurements[e].votes; });
-  const std::vector<int> tree = spanning_edges(s.num_nodes(), s.measurements, voters);
-  const SpanningForest forest = forest_of(s.num_nodes(), s.measurements, tree);
-  for (const int e : voters) {
-    if (std::binary_search(tree.begin(), tree.end(), e)) continue;
+  const std::vector<char> in_loop = on_loops(s, false);
+  for (int e = 0; e < static_cast<int>(s.measurements.size()); ++e) {
+    if (!in_loop[e]) continue;
     s.link_of(e).in_loop = true;
-    for (const int t : tree_path(forest, s.measurements[e].source, s.measurements[e].target))
-      s.link_of(t).in_loop = true;
+    s.link_of(e).probability = 1.0 / (1.0 + std::exp(-agreeing_vote(s.measurements[e], s.options)));
   }
-  for (const int e : voters)
-    if (s.link_of(e).in_loop)
-      s.link_of(e).probability = 1.0 / (1.0 + std::exp(-agreeing_vote(s.measurements[e], s.options)));
 }
 
 void record_errors(Solver& s, const SpanningForest& forest) {
@@ -299,16 +382,156 @@ std::vector<PlacedScan> placed_scans(const Solver& s, const SpanningForest& fore
   std::vector<PlacedScan> out;
   for (int node = 0; node < s.num_nodes(); ++node) {
     const int anchor = anchors.at(forest.root[node]);
-    PlacedScan placed{s.scans[node].id, component_of_id.at(s.scans[node].id), Transform::Identity(), {}, {}};
+    PlacedScan placed;
+    placed.id = s.scans[node].id;
+    placed.component = component_of_id.at(placed.id);
     if (node != anchor) {
       const Transform anchor_from_node = s.root_from_node[anchor].inverse() * s.root_from_node[node];
       placed.component_from_local = orthonormalised(Eigen::Translation3d(s.scans[anchor].centre) * anchor_from_node *
                                                     Eigen::Translation3d(-s.scans[node].centre));
     }
-    if (sigmas[node]) placed.sigma_m = sigmas[node]->translation_m, placed.sigma_rad = sigmas[node]->rotation_rad;
+    if (sigmas[node]) {
+      placed.sigma_m = sigmas[node]->translation_m, placed.sigma_rad = sigmas[node]->rotation_rad;
+      const std::optional<Georeference>& world = components[static_cast<std::size_t>(placed.component)].georeference;
+      Matrix6d turn = Matrix6d::Zero();
+      turn.topLeftCorner<3, 3>() = placed.component_from_local.linear();
+      if (world) turn.topLeftCorner<3, 3>() = world->shifted_from_component.linear() * turn.topLeftCorner<3, 3>();
+      turn.bottomRightCorner<3, 3>() = turn.topLeftCorner<3, 3>();
+      placed.covariance = turn * sigmas[node]->covariance * turn.transpose();
+    }
     out.push_back(placed);
   }
   return out;
+}
+
+/// World coordinates are large: a round number near their middle is taken off.
+Eigen::Vector3d datum_shift(const Control& control) {
+  constexpr double kRoundM = 100;
+  std::vector<Eigen::Vector3d> known;
+  for (const ControlPoint& p : control.points) known.push_back(p.p_in_world);
+  for (const ControlPose& p : control.poses) known.push_back(p.world_from_local.translation());
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+  for (int axis = 0; axis < 3 && !known.empty(); ++axis) {
+    std::vector<double> values;
+    for (const Eigen::Vector3d& p : known) values.push_back(p[axis]);
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+    shift[axis] = std::round(values[values.size() / 2] / kRoundM) * kRoundM;
+  }
+  return shift;
+}
+
+/// Control about nodes; node -1: about a scan that the graph does not have.
+std::vector<ControlTerm> terms_of(const Solver& s, const Control& control, const Eigen::Vector3d& shift,
+                                  std::vector<ControlResult>& results) {
+  std::vector<ControlTerm> terms;
+  const auto add = [&](ControlKind kind, const std::string& name, int id) -> ControlTerm& {
+    const auto scan = std::find_if(s.scans.begin(), s.scans.end(), [&](const GraphScan& g) { return g.id == id; });
+    const bool known = scan != s.scans.end();
+    results.push_back({kind,
+                       known && name.empty() ? name_of(*scan) : name,
+                       id,
+                       false,
+                       known ? "" : "its scan takes no part",
+                       {},
+                       {},
+                       {},
+                       {}});
+    ControlTerm term;
+    term.kind = kind;
+    term.node = known ? static_cast<int>(scan - s.scans.begin()) : -1;
+    return terms.emplace_back(term);
+  };
+  const auto centre = [&](int node) { return node < 0 ? Eigen::Vector3d::Zero().eval() : s.scans[node].centre; };
+  for (const ControlPoint& p : control.points) {
+    ControlTerm& term = add(ControlKind::point, p.name, p.scan);
+    term.p_in_node = p.p_in_local - centre(term.node);
+    term.p_in_shifted = p.p_in_world - shift;
+    term.sigma_m = p.sigma_m;
+  }
+  for (const ControlPose& p : control.poses) {
+    ControlTerm& term = add(ControlKind::pose, p.name, p.scan);
+    term.shifted_from_node =
+        Eigen::Translation3d(-shift) * p.world_from_local * Eigen::Translation3d(centre(term.node));
+    term.sigma_m.setConstant(p.sigma_m);
+    term.sigma_rad = p.sigma_rad;
+  }
+  for (const LevelledScan& l : control.levelled) add(ControlKind::levelled, "", l.scan).sigma_rad = l.sigma_rad;
+  return terms;
+}
+
+void record_miss(const ControlTerm& term, const Transform& pose, std::optional<Eigen::Vector3d>& d_m,
+                 std::optional<double>& angle) {
+  const ControlMiss miss = miss_of(term, pose);
+  if (term.kind != ControlKind::levelled) d_m = miss.d_m;
+  if (term.kind != ControlKind::point) angle = miss.angle_rad;
+}
+
+/// Lays one component into the world; its poses become those of the shifted world.
+std::optional<Georeference> georeference(Solver& s, const SpanningForest& forest, int root, int anchor,
+                                         const std::vector<ControlTerm>& terms, const Eigen::Vector3d& shift,
+                                         std::vector<ControlResult>& results) {
+  ControlledPart part;
+  part.anchor = anchor;
+  for (int node = 0; node < s.num_nodes(); ++node)
+    if (forest.root[node] == root) part.nodes.push_back(node);
+  std::vector<std::size_t> which;
+  for (std::size_t k = 0; k < terms.size(); ++k)
+    if (terms[k].node >= 0 && forest.root[terms[k].node] == root) which.push_back(k), part.terms.push_back(terms[k]);
+  if (part.terms.empty()) return std::nullopt;
+  std::vector<Measurement> links;
+  for (const int e : s.with_verdict(Verdict::accepted))
+    if (forest.root[s.measurements[e].source] == root) links.push_back(s.measurements[e]);
+  part.measurements = links;
+  // The anchor's local frame is the root, so that a part that is only levelled stays where it is.
+  const Transform rebased = Eigen::Translation3d(s.scans[anchor].centre) * s.root_from_node[anchor].inverse();
+  for (const int node : part.nodes) s.root_from_node[node] = rebased * s.root_from_node[node];
+  part.root_from_node = s.root_from_node;
+  std::vector<double> sigma_m(s.scans.size(), 0), sigma_rad(s.scans.size(), 0);
+  if (s.scans.size() <= kMaxScansForSigmas) {
+    const auto sigmas = pose_sigmas(s.root_from_node, links, {anchor});
+    for (std::size_t i = 0; i < sigmas.size(); ++i)
+      if (sigmas[i]) sigma_m[i] = sigmas[i]->translation_m, sigma_rad[i] = sigmas[i]->rotation_rad;
+  }
+  part.sigma_m = sigma_m;
+  part.sigma_rad = sigma_rad;
+  const ControlFit fit = fit_control(part);
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    ControlResult& result = results[which[k]];
+    result.reason = fit.refused[k];
+    result.used = fit.placed && result.reason.empty();
+    if (!fit.placed) continue;
+    const ControlTerm& term = part.terms[k];
+    const auto at = std::find(part.nodes.begin(), part.nodes.end(), term.node) - part.nodes.begin();
+    record_miss(term, fit.shifted_from_root * s.root_from_node[term.node], result.before, result.before_rad);
+    record_miss(term, fit.shifted_from_node[static_cast<std::size_t>(at)], result.after, result.after_rad);
+  }
+  if (!fit.placed) {
+    s.warnings.push_back(
+        fmt::format("the part of {} is not placed in the world: {}", name_of(s.scans[anchor]), fit.problem));
+    return std::nullopt;
+  }
+  for (std::size_t k = 0; k < part.nodes.size(); ++k) s.root_from_node[part.nodes[k]] = fit.shifted_from_node[k];
+  Georeference out;
+  if (!fit.levelled_only) out.shift_m = shift;
+  out.shifted_from_component =
+      orthonormalised(s.root_from_node[anchor] * Eigen::Translation3d(-s.scans[anchor].centre));
+  out.levelled_only = fit.levelled_only;
+  return out;
+}
+
+std::vector<ControlResult> lay_into_the_world(Solver& s, const SpanningForest& forest,
+                                              const std::map<int, int>& anchors, const Control& control,
+                                              std::map<int, Georeference>& by_anchor) {
+  std::vector<ControlResult> results;
+  const Eigen::Vector3d shift = datum_shift(control);
+  const std::vector<ControlTerm> terms = terms_of(s, control, shift, results);
+  for (const auto& [root, anchor] : anchors)
+    if (const auto placed = georeference(s, forest, root, anchor, terms, shift, results))
+      by_anchor[s.scans[anchor].id] = *placed;
+  for (const ControlResult& r : results)
+    if (!r.used && (r.before || r.before_rad))
+      s.warnings.push_back(fmt::format("control {}: not used, {}", r.name, r.reason));
+  return results;
 }
 
 }  // namespace
@@ -326,20 +549,26 @@ std::optional<Transform> predicted_target_from_source(const Solution& solution, 
   return orthonormalised(t->component_from_local.inverse() * s->component_from_local);
 }
 
-Solution solve(const PoseGraph& graph, const SolveOptions& options) {
+Solution solve(const PoseGraph& graph, const SolveOptions& options, const Control& control) {
   Solver s = prepared(graph, options);
   let_links_judge_each_other(s);
   // Ends: every turn moves at least one link from ambiguous to accepted or from accepted to rejected, never back.
   do {
     while (!optimise_once(s)) {
     }
-  } while (promote_confirmed(s));
+  } while (promote_confirmed(s) || doubt_bridges(s));
   const SpanningForest forest = forest_of(s.num_nodes(), s.measurements, spanning(s));
   const std::map<int, int> anchors = anchors_of(s, forest);
+  Solution solution;
+  std::map<int, Georeference> georeferences;  // by the anchor's id
+  if (!control.empty()) solution.control = lay_into_the_world(s, forest, anchors, control, georeferences);
   record_errors(s, forest);
   mark_loops(s);
-  Solution solution;
   solution.components = components_of(s, forest, anchors);
+  for (Component& component : solution.components) {
+    const auto at = georeferences.find(component.anchor);
+    if (at != georeferences.end()) component.georeference = at->second;
+  }
   solution.scans = placed_scans(s, forest, anchors, solution.components);
   solution.links = std::move(s.links);
   solution.warnings = std::move(s.warnings);

@@ -26,14 +26,14 @@ TEST_F(Clean, takes_what_earlier_settings_left_behind_and_nothing_that_the_next_
 
   const Said dry = run({"clean", out_.string(), "--dry-run"});
   EXPECT_EQ(dry.exit_code, 0) << dry.err;
-  EXPECT_NE(dry.out.find("would remove 11 products"), std::string::npos) << dry.out;  // 5 of each scan, a pair
+  EXPECT_NE(dry.out.find("would remove 12 products"), std::string::npos) << dry.out;  // 5 of each scan, a pair, the survey
   EXPECT_EQ(num_artifacts(out_ / "store"), many);
   EXPECT_NE(run({"clean", out_.string(), "--keep-days", "1"}).out.find("removed 0 products"), std::string::npos);
 
   const Said said = run({"clean", out_.string()});
   EXPECT_EQ(said.exit_code, 0) << said.err;
-  EXPECT_NE(said.out.find("removed 11 products"), std::string::npos) << said.out;
-  EXPECT_EQ(num_artifacts(out_ / "store"), many - 11);
+  EXPECT_NE(said.out.find("removed 12 products"), std::string::npos) << said.out;
+  EXPECT_EQ(num_artifacts(out_ / "store"), many - 12);
   ASSERT_EQ(register_scans().exit_code, 0);
   EXPECT_EQ(made(out_), "0");
   EXPECT_NE(run({"clean", out_.string()}).out.find("removed 0 products"), std::string::npos);
@@ -49,7 +49,7 @@ TEST_F(Clean, of_a_shared_store_spares_what_the_other_output_needs) {
   ASSERT_EQ(register_scans({"--store", kept, "--set", "sampling.voxel_m=0.12"}).exit_code, 0);
   EXPECT_EQ(made(out_), "0");
   fs::remove_all(out_);
-  EXPECT_NE(run({"clean", other}).out.find("removed 11 products"), std::string::npos);
+  EXPECT_NE(run({"clean", other}).out.find("removed 12 products"), std::string::npos);
 }
 
 TEST_F(Clean, takes_nothing_from_a_run_that_was_killed_and_will_go_on) {

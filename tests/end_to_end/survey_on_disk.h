@@ -15,10 +15,11 @@ namespace isthmus::testing {
 namespace fs = std::filesystem;
 
 /// The files whose bytes may not depend on threads, order of files or what was in the store.
-inline const std::vector<std::string> kDeterministicFiles = {"scans.csv", "poses.txt", "pose_graph.g2o", "links.csv"};
-inline const std::vector<std::string> kAllFiles = {"scans.csv",     "poses.txt",   "pose_graph.g2o",
-                                                   "links.csv",     "timings.csv", "run.json",
-                                                   "resolved.yaml", "report.html", "report.json"};
+inline const std::vector<std::string> kDeterministicFiles = {"scans.csv", "poses.txt", "pose_graph.g2o", "links.csv",
+                                                             "covariances.csv"};
+inline const std::vector<std::string> kAllFiles = {"scans.csv",       "poses.txt",   "pose_graph.g2o", "links.csv",
+                                                   "covariances.csv", "timings.csv", "run.json",       "resolved.yaml",
+                                                   "report.html",     "report.json"};
 
 class SurveyOnDisk : public ::testing::Test {
  protected:

@@ -62,7 +62,7 @@ TEST_F(PoseExports, TheSurveyReadBackIsTheOneWritten) {
     EXPECT_EQ(read.target, l.link.target);
     EXPECT_TRUE(read.target_from_source.isApprox(target_from_source_in_scans(record, l.link), 1e-12));
     const Matrix6d expected =
-        information_in_scan(l.link.result.information, find_scan(record, l.link.source)->local_origin_in_scan);
+        information_in_scan(l.information_used, find_scan(record, l.link.source)->local_origin_in_scan);
     EXPECT_TRUE(read.information.isApprox(expected, 1e-9));
   }
   EXPECT_EQ(accepted, survey.links.size());
@@ -180,7 +180,7 @@ TEST_F(PoseExports, RiscanHasTheMatrixOfEachScanUnderItsName) {
   EXPECT_EQ(export_pose_files(survey, survey.scans[0].component, PoseFormat::riscan)[0].name, "site.v2/plain.DAT");
 }
 
-// The error that Open3D minimises, differentiated: the same cost as the pair stage's information gives.
+// The error that Open3D minimises, differentiated: the same cost as the solver's information gives.
 TEST_F(PoseExports, Open3dEdgesFitTheirNodesAndWeighRotationFirst) {
   const auto graph = nlohmann::json::parse(export_poses(survey, 0, PoseFormat::open3d));
   EXPECT_EQ(graph["class_name"], "PoseGraph");

@@ -193,9 +193,9 @@ TEST(Outputs, G2oEdgesAgreeWithVerticesInScanFrames) {
   }
 }
 
-/// The information convention, proven: the cost that g2o computes from our file equals the cost that the pair stage
+/// The information convention, proven: the cost that g2o computes from our file equals the cost that the solver
 /// meant, d' I d for target_from_source * exp(d) between local frames, for every small d, with every cross term.
-TEST(Outputs, G2oInformationMeansWhatThePairStageMeant) {
+TEST(Outputs, G2oInformationMeansWhatTheSolverMeant) {
   Rng rng(8);
   for (int trial = 0; trial < 20; ++trial) {
     SurveyRecord record = sample_record(4);
@@ -204,7 +204,7 @@ TEST(Outputs, G2oInformationMeansWhatThePairStageMeant) {
     link.result.verdict = Verdict::accepted;
     Matrix6d a;
     for (double& value : a.reshaped()) value = rng.normal();
-    link.result.information = a.transpose() * a;
+    record.solution.links[0].information_used = a.transpose() * a;
     link.result.target_from_source = random_pose(rng, 20);
     for (ScanRecord& scan : record.scans)
       scan.local_origin_in_scan = Eigen::Vector3d(rng.uniform(-9, 9), rng.uniform(-9, 9), rng.uniform(-9, 9)),
@@ -229,7 +229,8 @@ TEST(Outputs, G2oInformationMeansWhatThePairStageMeant) {
       jacobian.col(k) = (error_at(kStep) - error_at(-kStep)) / (2 * kStep);
     }
     const Matrix6d meant = jacobian.transpose() * g.edges[0].information * jacobian;
-    EXPECT_LT((meant - link.result.information).norm(), 1e-5 * link.result.information.norm());
+    const Matrix6d& used = record.solution.links[0].information_used;
+    EXPECT_LT((meant - used).norm(), 1e-5 * used.norm());
   }
 }
 
@@ -345,6 +346,22 @@ TEST(Outputs, ReportJsonSaysWhatThePageSays) {
   EXPECT_EQ(json["run"]["threads"], 2);
   record.scans[0].name = "broken\xff name";
   EXPECT_FALSE(nlohmann::json::parse(report_json(record)).is_discarded());
+}
+
+TEST(Outputs, ReportJsonSaysWhatWasDoneByHand) {
+  SurveyRecord record = sample_record(14);
+  EXPECT_TRUE(nlohmann::json::parse(report_json(record))["edits"].empty());
+  Link& link = record.solution.links[0].link;
+  link.by_hand = ByHand::taken_out;
+  link.result.verdict = Verdict::rejected;
+  const auto json = nlohmann::json::parse(report_json(record));
+  ASSERT_EQ(json["edits"].size(), 1U);
+  EXPECT_EQ(json["edits"][0]["source"], find_scan(record, link.source)->name);
+  EXPECT_EQ(json["links"][0]["by_hand"], "taken out");
+  const std::string summary = json["verdict"]["summary"];
+  EXPECT_NE(summary.find("Taken out by hand: "), std::string::npos);
+  EXPECT_EQ(summary.back(), '.');
+  EXPECT_NE(html_report(record).find("Taken out by hand: "), std::string::npos);
 }
 
 TEST(Html, EveryLinkIsMarkedInTableMapAndMatrix) {

@@ -244,6 +244,16 @@ TEST(Solve, RefutedLinksAreRejectedAndJoinNothing) {
   EXPECT_EQ(find_link(solution, 0, 1)->link.result.reason, "the scans around it say no");
 }
 
+TEST(Solve, OfALinkThatIsRefutedAndTakenOutTheHandIsNamed) {
+  World world(2);
+  Link& link = world.right(0, 1);
+  link.refuted = "the scans around it say no";
+  link.by_hand = ByHand::taken_out;
+  const Solution solution = solve(world.graph, {});
+  EXPECT_EQ(find_link(solution, 0, 1)->link.result.verdict, Verdict::rejected);
+  EXPECT_NE(find_link(solution, 0, 1)->link.result.reason.find("taken out by hand"), std::string::npos);
+}
+
 // Equal rooms, a whole number of rooms apart: links that are wrong by the same shift agree, but the scans stand in each
 // other's seen-through space.
 TEST(Solve, LinksThatFreeSpaceForbidsConfirmNobody) {

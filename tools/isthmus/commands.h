@@ -7,6 +7,8 @@ namespace isthmus::cli {
 
 void add_register(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
+void add_solve(CLI::App& app, int& exit_code);
+void add_explain(CLI::App& app, int& exit_code);
 void add_pair(CLI::App& app, int& exit_code);
 void add_inspect(CLI::App& app, int& exit_code);
 void add_simulate(CLI::App& app, int& exit_code);

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "exit_codes.h"
-#include "pipelines/run_job.h"
 #include "report/run_json.h"
 #include "stop_signal.h"
 
@@ -16,16 +15,6 @@ struct Ended {
   int exit_code = kFailure;
   std::string summary;
 };
-
-std::string summary_of(const pipelines::JobResult& result, const pipelines::Job& job) {
-  const report::SurveyCounts counts = report::count(result.record);
-  std::string text = fmt::format("{} of {} scans in the largest component, {} links accepted of {} pairs tried",
-                                 counts.in_largest, counts.scans, counts.accepted, counts.pairs);
-  if (counts.components > 1) text += fmt::format(", {} components", counts.components);
-  if (counts.failed > 0)
-    text += fmt::format(", {} {} not usable", counts.failed, counts.failed == 1 ? "scan" : "scans");
-  return text + fmt::format("; report: {}", (job.output / "report.html").string());
-}
 
 Ended run_one(const pipelines::Job& job, const std::string& command, Terminal& terminal) {
   const pipelines::Events events = terminal.events();
@@ -39,9 +28,9 @@ Ended run_one(const pipelines::Job& job, const std::string& command, Terminal& t
   }
   switch (result->end) {
     case pipelines::JobEnd::connected:
-      return {kSuccess, summary_of(*result, job)};
+      return {kSuccess, summary_of(*result, job.output)};
     case pipelines::JobEnd::unconnected:
-      return {kUnconnected, summary_of(*result, job)};
+      return {kUnconnected, summary_of(*result, job.output)};
     case pipelines::JobEnd::shared:
       return {kSuccess, fmt::format("everything is in {}: the same command without --shard collects it",
                                     pipelines::store_folder(job).string())};
@@ -68,6 +57,16 @@ int worse(int a, int b) {
 }
 
 }  // namespace
+
+std::string summary_of(const pipelines::JobResult& result, const std::filesystem::path& out) {
+  const report::SurveyCounts counts = report::count(result.record);
+  std::string text = fmt::format("{} of {} scans in the largest component, {} links accepted of {} pairs tried",
+                                 counts.in_largest, counts.scans, counts.accepted, counts.pairs);
+  if (counts.components > 1) text += fmt::format(", {} components", counts.components);
+  if (counts.failed > 0)
+    text += fmt::format(", {} {} not usable", counts.failed, counts.failed == 1 ? "scan" : "scans");
+  return text + fmt::format("; report: {}", (out / "report.html").string());
+}
 
 int run_jobs(const std::vector<pipelines::Job>& jobs, const std::string& command, Terminal& terminal) {
   catch_stop_signals();

@@ -49,6 +49,8 @@ int main(int argc, char** argv) {
   int exit_code = isthmus::cli::kSuccess;
   isthmus::cli::add_register(app, exit_code);
   isthmus::cli::add_run(app, exit_code);
+  isthmus::cli::add_solve(app, exit_code);
+  isthmus::cli::add_explain(app, exit_code);
   isthmus::cli::add_pair(app, exit_code);
   isthmus::cli::add_inspect(app, exit_code);
   isthmus::cli::add_simulate(app, exit_code);

@@ -14,6 +14,7 @@ namespace {
 struct RegisterRun {
   std::vector<std::string> inputs;
   std::string output;
+  std::string control;
   SettingsFlags flags;
 
   int run() const {
@@ -22,6 +23,7 @@ struct RegisterRun {
     job.origin = "command line";
     job.inputs.assign(inputs.begin(), inputs.end());
     job.output = output;
+    job.control = control;
     if (const Result<void> good = flags.apply(job); !good) {
       terminal.error(good.error());
       return kUsage;
@@ -42,6 +44,12 @@ void add_register(CLI::App& app, int& exit_code) {
                    "same folder goes on where it stopped")
       ->required()
       ->type_name("OUT");
+  command
+      ->add_option(
+          "--control", run->control,
+          "Known points, stations, poses and level scans (YAML or CSV, docs/stages/control.md): the result stands in "
+          "their frame")
+      ->type_name("FILE");
   run->flags.add_config(*command);
   run->flags.add_overrides(*command);
   run->flags.add_store(*command);

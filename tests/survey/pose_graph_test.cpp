@@ -218,6 +218,16 @@ TEST(Solve, AmbiguousLinkThatTheLoopConfirmsIsPromoted) {
   EXPECT_EQ(find_link(solution, 0, 2)->link.result.verdict, Verdict::ambiguous);
 }
 
+TEST(Solve, AnUnlikelyLinkMustAgreeTwiceAsClosely) {
+  for (const auto& [probability, expected] : {std::pair{0.06, Verdict::ambiguous}, std::pair{0.5, Verdict::accepted}}) {
+    World world(4);
+    for (int i = 0; i < 3; ++i) world.exact(i, i + 1), world.exact(i, (i + 2) % 4);
+    world.add(3, 0, world.truth(3, 0) * Transform(Eigen::Translation3d(1.5 * kVoxel, 0, 0)), probability,
+              Verdict::ambiguous);
+    EXPECT_EQ(find_link(solve(world.graph, {}), 3, 0)->link.result.verdict, expected) << probability;
+  }
+}
+
 TEST(Solve, TwoAmbiguousLinksThatAgreeJoinParts) {
   World world(4);
   world.right(0, 1), world.right(2, 3);

@@ -26,7 +26,8 @@ TEST_F(Clean, takes_what_earlier_settings_left_behind_and_nothing_that_the_next_
 
   const Said dry = run({"clean", out_.string(), "--dry-run"});
   EXPECT_EQ(dry.exit_code, 0) << dry.err;
-  EXPECT_NE(dry.out.find("would remove 12 products"), std::string::npos) << dry.out;  // 5 of each scan, a pair, the survey
+  EXPECT_NE(dry.out.find("would remove 12 products"), std::string::npos)
+      << dry.out;  // 5 of each scan, a pair, the survey
   EXPECT_EQ(num_artifacts(out_ / "store"), many);
   EXPECT_NE(run({"clean", out_.string(), "--keep-days", "1"}).out.find("removed 0 products"), std::string::npos);
 
@@ -49,7 +50,12 @@ TEST_F(Clean, of_a_shared_store_spares_what_the_other_output_needs) {
   ASSERT_EQ(register_scans({"--store", kept, "--set", "sampling.voxel_m=0.12"}).exit_code, 0);
   EXPECT_EQ(made(out_), "0");
   fs::remove_all(out_);
-  EXPECT_NE(run({"clean", other}).out.find("removed 12 products"), std::string::npos);
+  const std::size_t before = num_artifacts(kept);
+  const Said cleaned = run({"clean", other});
+  EXPECT_EQ(cleaned.exit_code, 0) << cleaned.err;
+  EXPECT_GE(before, num_artifacts(kept) + 11) << cleaned.out;  // what only the other output needed
+  ASSERT_EQ(run({"register", scans_.string(), "-o", other, "--store", kept}).exit_code, 0);
+  EXPECT_EQ(run_json(other)["run"]["products_made"], "0");
 }
 
 TEST_F(Clean, takes_nothing_from_a_run_that_was_killed_and_will_go_on) {

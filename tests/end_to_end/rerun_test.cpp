@@ -19,13 +19,6 @@ class Rerun : public SurveyOnDisk {
     more.insert(more.begin(), voxel_.begin(), voxel_.end());
     return register_scans(more);
   }
-  /// Files changed a moment ago are always read anew; these were not.
-  void make_old_survey(int stations) {
-    make_survey(stations);
-    for (const auto& entry : fs::directory_iterator(scans_)) {
-      fs::last_write_time(entry.path(), entry.last_write_time() - std::chrono::hours(1));
-    }
-  }
   /// Other bytes in the place of a scan's, with nothing to tell: whoever reads the scan fails.
   void make_unreadable(const fs::path& scan) {
     const fs::file_time_type time = fs::last_write_time(scan);

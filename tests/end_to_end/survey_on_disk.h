@@ -38,6 +38,14 @@ class SurveyOnDisk : public ::testing::Test {
     ASSERT_TRUE(made) << made.error().text();
   }
 
+  /// Files changed a moment ago are always read anew, and their digests not kept; these were not.
+  void make_old_survey(int stations) {
+    make_survey(stations);
+    for (const auto& entry : fs::directory_iterator(scans_)) {
+      fs::last_write_time(entry.path(), entry.last_write_time() - std::chrono::hours(1));
+    }
+  }
+
   Said run(const std::vector<std::string>& arguments) {
     return run_program(ISTHMUS_PROGRAM, arguments, folder_.path());
   }

@@ -8,6 +8,8 @@
 #include <tuple>
 #include <utility>
 
+#include "pairwise/judge.h"
+
 namespace isthmus::pipelines {
 namespace {
 
@@ -101,16 +103,6 @@ struct Testimony {
     return share >= (num_forbidden > 1 ? kShareOfSeveral : kShareOfOne);
   }
 };
-
-/// How much of what the pair itself could see speaks against its pose.
-double contradicting_share(const PairResult& result) {
-  double support = 0, contradiction = 0;
-  for (const auto& [name, value] : result.evidence) {
-    if (name == "support") support = value;
-    if (name == "contradiction") contradiction = value;
-  }
-  return contradiction > 0 ? contradiction / (contradiction + support) : 0.0;
-}
 
 Testimony testimony_against(const Suspect& suspect, std::span<const PosedPair> pairs,
                             std::span<const std::optional<PoseCheck>> checks) {

@@ -230,7 +230,6 @@ class SurveyGraph {
     const ModelSources sources = model_sources();
     CandidateGraph graph =
         propose_candidates(inputs, settings_.candidates, screen_pairs(glances, sources, events_, stop_));
-    out_.num_screened = glances.size();
     for (const std::string& warning : graph.warnings) warn(warning);
     rounds_ = std::make_unique<PairRounds>(std::move(graph), settings_.candidates, inputs.size());
     for (ScanOutcome& scan : out_.scans) {

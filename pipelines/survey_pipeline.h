@@ -61,7 +61,6 @@ struct SurveyOutcome {
   PoseGraph graph;                    ///< of the scans that did not fail, all pairs: what was solved in the end
   Solution solution;                  ///< of that graph
   std::vector<std::string> warnings;  ///< in a fixed order
-  std::size_t num_screened = 0;       ///< pairs that were glanced at before any was registered
   std::size_t num_made = 0;           ///< products computed in this run
   std::size_t num_found = 0;          ///< products found in the store
   std::size_t num_missing = 0;  ///< scans and pairs of other shares that are not in the store: there is no solution

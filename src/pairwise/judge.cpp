@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 namespace isthmus {
 
@@ -35,6 +34,16 @@ bool unobserved(const PairEvidence& e) {
   return e.observability < kNotObserved;
 }
 
+// The terms that free space gave, as judge() wrote them down.
+PairEvidence free_space_terms(const PairResult& result) {
+  PairEvidence evidence;
+  for (const auto& [name, value] : result.evidence) {
+    if (name == "contradiction") evidence.contradiction = value;
+    if (name == "support") evidence.support = value;
+  }
+  return evidence;
+}
+
 }  // namespace
 
 double probability_of(const PairEvidence& e) {
@@ -52,17 +61,9 @@ double probability_of(const PairEvidence& e) {
   return slides(e) || unobserved(e) ? std::min(p, kSlidingProbability) : p;
 }
 
-bool forbidden_by_free_space(const PairResult& result) {
-  const auto term = [&](std::string_view name) {
-    const auto at =
-        std::ranges::find(result.evidence, name, [](const auto& named) { return std::string_view(named.first); });
-    return at == result.evidence.end() ? 0.0 : at->second;
-  };
-  PairEvidence evidence;
-  evidence.contradiction = term("contradiction");
-  evidence.support = term("support");
-  return vetoed(evidence);
-}
+double contradicting_share(const PairResult& result) { return contradicting_share(free_space_terms(result)); }
+
+bool forbidden_by_free_space(const PairResult& result) { return vetoed(free_space_terms(result)); }
 
 void judge(const PairEvidence& e, const PairOptions& options, PairResult& result) {
   result.evidence = {{"score", e.score},

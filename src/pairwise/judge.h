@@ -30,6 +30,9 @@ struct PairEvidence {
 /// the sets it was fitted on and the sets it was checked on.
 double probability_of(const PairEvidence& evidence);
 
+/// Share of what lies in sight of the other station that contradicts the pose; 0 where nothing was measured.
+double contradicting_share(const PairResult& result);
+
 /// Whether free space forbids the pose: too much of a scan stands where the other station saw through. No support, and
 /// no other link that agrees, outweighs it: rooms that repeat agree with each other. False where nothing was measured.
 bool forbidden_by_free_space(const PairResult& result);

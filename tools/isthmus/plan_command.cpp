@@ -62,21 +62,18 @@ struct PlanRun {
 
   int run() const {
     Terminal terminal;
-    pipelines::Job job;
-    job.origin = "command line";
-    job.inputs.assign(inputs.begin(), inputs.end());
-    job.output = output;
-    if (const Result<void> good = flags.apply(job); !good) {
-      terminal.error(good.error());
+    const Result<pipelines::Job> job = flags.job(inputs, output);
+    if (!job) {
+      terminal.error(job.error());
       return kUsage;
     }
-    const Result<pipelines::Outlook> outlook = pipelines::look_ahead(job);
+    const Result<pipelines::Outlook> outlook = pipelines::look_ahead(*job);
     if (!outlook) {
       terminal.error(outlook.error());
       return kFailure;
     }
     for (const std::string& warning : outlook->warnings) terminal.warn(warning);
-    print(*outlook, job);
+    print(*outlook, *job);
     return kSuccess;
   }
 };

@@ -19,16 +19,13 @@ struct RegisterRun {
 
   int run() const {
     Terminal terminal;
-    pipelines::Job job;
-    job.origin = "command line";
-    job.inputs.assign(inputs.begin(), inputs.end());
-    job.output = output;
-    job.control = control;
-    if (const Result<void> good = flags.apply(job); !good) {
-      terminal.error(good.error());
+    Result<pipelines::Job> job = flags.job(inputs, output);
+    if (!job) {
+      terminal.error(job.error());
       return kUsage;
     }
-    return run_jobs({job}, "register", terminal);
+    job->control = control;
+    return run_jobs({*job}, "register", terminal);
   }
 };
 

@@ -53,6 +53,15 @@ Result<void> SettingsFlags::apply(pipelines::Job& job) const {
   return apply(job.settings);
 }
 
+Result<pipelines::Job> SettingsFlags::job(const std::vector<std::string>& inputs, const std::string& output) const {
+  pipelines::Job job;
+  job.origin = "command line";
+  job.inputs.assign(inputs.begin(), inputs.end());
+  job.output = output;
+  if (const Result<void> good = apply(job); !good) return tl::unexpected(good.error());
+  return job;
+}
+
 Result<void> SettingsFlags::apply(pipelines::Settings& settings) const {
   for (const std::string& config : configs) {
     if (const Result<void> done = pipelines::apply_config(settings, config); !done) return done;

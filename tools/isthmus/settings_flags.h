@@ -27,6 +27,8 @@ struct SettingsFlags {
   [[nodiscard]] Result<void> apply(pipelines::Settings& settings) const;
   /// apply() on the job's settings, and the shard.
   [[nodiscard]] Result<void> apply(pipelines::Job& job) const;
+  /// The job of a command that names scans and an output, with all of the above.
+  [[nodiscard]] Result<pipelines::Job> job(const std::vector<std::string>& inputs, const std::string& output) const;
 };
 
 }  // namespace isthmus::cli

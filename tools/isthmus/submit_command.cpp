@@ -28,17 +28,14 @@ struct SubmitRun {
 
   int run() {
     Terminal terminal;
-    pipelines::Job job;
-    job.origin = "command line";
-    job.inputs.assign(inputs.begin(), inputs.end());
-    job.output = output;
-    if (const Result<void> good = flags.apply(job); !good) {
-      terminal.error(good.error());
+    const Result<pipelines::Job> job = flags.job(inputs, output);
+    if (!job) {
+      terminal.error(job.error());
       return kUsage;
     }
     std::error_code error;
     slurm.program = fs::read_symlink("/proc/self/exe", error).string();
-    const Result<std::vector<pipelines::SlurmJob>> jobs = pipelines::submit_to_slurm(job, slurm);
+    const Result<std::vector<pipelines::SlurmJob>> jobs = pipelines::submit_to_slurm(*job, slurm);
     if (!jobs) {
       terminal.error(jobs.error());
       return kFailure;

@@ -1,42 +1,20 @@
 #include "pipelines/bridge_checks.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include "pipelines/line_of_stations.h"
 
 namespace isthmus::pipelines {
 namespace {
 
 /// Two triangles of scans, 0-1-2 and 3-4-5, each confirmed by its loop, and one link 3 -> 2 without a loop between
-/// them. Stations 10 m apart along a line; each sees a 50 m x 10 m floor around it.
-struct TwoParts {
-  std::vector<ScanSummary> summaries{6};
-  std::vector<OutlinedScan> scans;
-  Solution solution;
-
-  TwoParts() {
-    for (int i = 0; i < 6; ++i) {
-      ScanSummary& scan = summaries[static_cast<std::size_t>(i)];
-      for (int x = -25; x <= 25; ++x)
-        for (int y = -5; y <= 5; ++y) scan.outline.emplace_back(x, y, 0);
-      scan.outline_cell_m = 1;
-      PlacedScan placed;
-      placed.id = i;
-      placed.component_from_local.translation() = Eigen::Vector3d(10.0 * i, 0, 0);
-      solution.scans.push_back(placed);
-      scans.push_back({i, &scan, fmt::format("s{}", i)});
-    }
+/// them.
+struct TwoParts : LineOfStations {
+  TwoParts() : LineOfStations(6, 25) {
     for (const auto& [s, t] :
          {std::pair{1, 0}, std::pair{2, 0}, std::pair{2, 1}, std::pair{4, 3}, std::pair{5, 3}, std::pair{5, 4}})
-      add(s, t, true);
-    add(3, 2, false);
-  }
-  void add(int source, int target, bool in_loop) {
-    SolvedLink solved;
-    solved.link.source = source;
-    solved.link.target = target;
-    solved.link.result.verdict = Verdict::accepted;
-    solved.in_loop = in_loop;
-    solution.links.push_back(solved);
+      link(s, t, Verdict::accepted, true);
+    link(3, 2, Verdict::accepted);
   }
 };
 
@@ -82,7 +60,7 @@ TEST(BridgeChecks, FewDoubtfulWitnessesRefuteNothing) {
 TEST(BridgeChecks, TheLinkThatAllForbiddenPairsCrossIsAccused) {
   TwoParts parts;
   parts.solution.links.clear();
-  parts.add(1, 0, false), parts.add(2, 1, false), parts.add(3, 2, false);
+  parts.link(1, 0, Verdict::accepted), parts.link(2, 1, Verdict::accepted), parts.link(3, 2, Verdict::accepted);
   const auto check = [](std::span<const PosedPair> pairs) {
     std::vector<std::optional<PoseCheck>> out;
     for (const PosedPair& pair : pairs) out.emplace_back(pair.target <= 1 && pair.source >= 2 ? kForbidden : kFine);
@@ -96,8 +74,7 @@ TEST(BridgeChecks, TheLinkThatAllForbiddenPairsCrossIsAccused) {
 
 TEST(BridgeChecks, WhatWasFoundWhereTheWrongLinkPointedGoesWithIt) {
   TwoParts parts;
-  parts.add(4, 2, false);
-  parts.solution.links.back().link.guided = true;
+  parts.link(4, 2, Verdict::accepted).guided = true;
   std::vector<PosedPair> asked;
   const auto refuted = refuted_bridge(parts.solution, parts.scans, answering(asked, {kForbidden}));
   ASSERT_EQ(refuted.size(), 2U);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <set>
 
+#include "pipelines/line_of_stations.h"
+
 namespace isthmus::pipelines {
 namespace {
 
@@ -76,28 +78,17 @@ TEST(PairRounds, KeepToTheBudgetOfTheFirstRound) {
   EXPECT_EQ(tried.size(), 4U * kScans);
 }
 
-/// A floor of 30 m x 10 m around each station, 10 m apart along a line.
 TEST(PairRounds, LookWhereThePosesPredictOverlapOnceAPair) {
-  std::vector<ScanSummary> summaries(3);
-  Solution solution = placed({0, 0, 0});
-  std::vector<OutlinedScan> scans;
-  for (int i = 0; i < 3; ++i) {
-    ScanSummary& scan = summaries[static_cast<std::size_t>(i)];
-    for (int x = -15; x <= 15; ++x)
-      for (int y = -5; y <= 5; ++y) scan.outline.emplace_back(x, y, 0);
-    scan.outline_cell_m = 1;
-    solution.scans[static_cast<std::size_t>(i)].component_from_local.translation().x() = 10.0 * i;
-    scans.push_back({i, &scan, ""});
-  }
+  const LineOfStations line(3);
   PairRounds rounds({}, {}, 3);
-  const auto wave = rounds.next(solution, scans);
+  const auto wave = rounds.next(line.solution, line.scans);
   EXPECT_EQ(pairs_of(wave), (Pairs{{0, 1}, {0, 2}, {1, 2}}));
   for (const PlannedPair& pair : wave) {
     ASSERT_TRUE(pair.target_from_source);
     EXPECT_NEAR(pair.target_from_source->translation().x(), 10.0 * (pair.source - pair.target), 1e-9);
     EXPECT_EQ(pair.why, "predicted");
   }
-  EXPECT_TRUE(rounds.next(solution, scans).empty());
+  EXPECT_TRUE(rounds.next(line.solution, line.scans).empty());
 }
 
 }  // namespace

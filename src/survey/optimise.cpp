@@ -17,6 +17,14 @@ constexpr double kDecided = 1e-3;
 constexpr int kMaxIterations = 100;
 constexpr double kRelativeTolerance = 1e-12;
 
+template <class T>
+Eigen::Matrix<T, 3, 1> rotation_vector(const Eigen::Quaternion<T>& turn) {
+  const T wxyz[4] = {turn.w(), turn.x(), turn.y(), turn.z()};
+  Eigen::Matrix<T, 3, 1> vector;
+  ceres::QuaternionToAngleAxis(wxyz, vector.data());
+  return vector;
+}
+
 /// Residual W (translation; rotation vector) of measured^-1 * target_from_source, quaternions x y z w.
 struct LinkResidual {
   Eigen::Quaterniond measured_rotation;
@@ -33,14 +41,9 @@ struct LinkResidual {
     const V translation = target_from_root * (translation_source - translation_target);
     const Q rotation = target_from_root * rotation_source;
     const Q measured_inverse = measured_rotation.conjugate().template cast<T>();
-    const V d_translation = measured_inverse * (translation - measured_translation.template cast<T>());
-    const Q d_rotation = measured_inverse * rotation;
-    const T wxyz[4] = {d_rotation.w(), d_rotation.x(), d_rotation.y(), d_rotation.z()};
     Eigen::Matrix<T, 6, 1> d;
-    d.template head<3>() = d_translation;
-    T angle_axis[3];
-    ceres::QuaternionToAngleAxis(wxyz, angle_axis);
-    d[3] = angle_axis[0], d[4] = angle_axis[1], d[5] = angle_axis[2];
+    d.template head<3>() = measured_inverse * (translation - measured_translation.template cast<T>());
+    d.template tail<3>() = rotation_vector<T>(measured_inverse * rotation);
     Eigen::Map<Eigen::Matrix<T, 6, 1>> residual(out);
     residual = whitening.template cast<T>() * d;
     return true;
@@ -125,14 +128,11 @@ struct PoseResidual {
     const Eigen::Map<const V> translation(t);
     const Eigen::Map<const Eigen::Quaternion<T>> rotation(q);
     const V off = translation - term.shifted_from_node.translation().cast<T>();
-    const Eigen::Quaternion<T> turn =
-        Eigen::Quaterniond(term.shifted_from_node.linear()).conjugate().cast<T>() * rotation;
-    const T wxyz[4] = {turn.w(), turn.x(), turn.y(), turn.z()};
-    T angle_axis[3];
-    ceres::QuaternionToAngleAxis(wxyz, angle_axis);
+    const V turn =
+        rotation_vector<T>(Eigen::Quaterniond(term.shifted_from_node.linear()).conjugate().cast<T>() * rotation);
     for (int k = 0; k < 3; ++k) {
       out[k] = off[k] / term.sigma_m[k];
-      out[3 + k] = angle_axis[k] / term.sigma_rad;
+      out[3 + k] = turn[k] / term.sigma_rad;
     }
     return true;
   }
@@ -184,24 +184,31 @@ void add_link(ceres::Problem& problem, const Measurement& m, double weight, std:
   problem.AddResidualBlock(cost, nullptr, target.t.data(), target.q.data(), source.t.data(), source.q.data());
 }
 
+void add_pose(ceres::Problem& problem, Pose& pose, ceres::Manifold* manifold) {
+  problem.AddParameterBlock(pose.t.data(), 3);
+  problem.AddParameterBlock(pose.q.data(), 4, manifold);
+}
+
+/// Least squares; the text is empty when the optimiser is content.
+std::string solved(ceres::Problem& problem) {
+  ceres::Solver::Summary summary;
+  ceres::Solve(ceres_options(), &problem, &summary);
+  return summary.IsSolutionUsable() ? std::string() : summary.BriefReport();
+}
+
 /// One weighted least-squares solve; the text is empty when the optimiser is content.
 std::string solve_weighted(std::vector<Pose>& poses, std::span<const Measurement> measurements,
                            const std::vector<double>& weights, const std::vector<int>& fixed) {
   ceres::Problem problem;
   ceres::EigenQuaternionManifold* const manifold = new ceres::EigenQuaternionManifold;  // owned by the problem
-  for (Pose& pose : poses) {
-    problem.AddParameterBlock(pose.t.data(), 3);
-    problem.AddParameterBlock(pose.q.data(), 4, manifold);
-  }
+  for (Pose& pose : poses) add_pose(problem, pose, manifold);
   for (std::size_t e = 0; e < measurements.size(); ++e)
     if (weights[e] > 0) add_link(problem, measurements[e], weights[e], poses);
   for (const int node : fixed) {
     problem.SetParameterBlockConstant(poses[node].t.data());
     problem.SetParameterBlockConstant(poses[node].q.data());
   }
-  ceres::Solver::Summary summary;
-  ceres::Solve(ceres_options(), &problem, &summary);
-  return summary.IsSolutionUsable() ? std::string() : summary.BriefReport();
+  return solved(problem);
 }
 
 std::vector<double> chi2_of_all(const std::vector<Pose>& poses, std::span<const Measurement> measurements) {
@@ -269,18 +276,13 @@ OptimisedPoses optimise_with_control(std::vector<Transform> shifted_from_node,
   std::vector<char> touched(poses.size(), 0);
   for (const Measurement& m : measurements) touched[m.source] = touched[m.target] = 1;
   for (const ControlTerm& term : terms) touched[term.node] = 1;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (!touched[i]) continue;
-    problem.AddParameterBlock(poses[i].t.data(), 3);
-    problem.AddParameterBlock(poses[i].q.data(), 4, manifold);
-  }
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (touched[i]) add_pose(problem, poses[i], manifold);
   for (const Measurement& m : measurements) add_link(problem, m, 1.0, poses);
   for (const ControlTerm& term : terms) add_term(problem, term, poses[term.node]);
   if (held >= 0) hold_place_and_heading(problem, poses[held]);
   OptimisedPoses out;
-  ceres::Solver::Summary summary;
-  ceres::Solve(ceres_options(), &problem, &summary);
-  if (!summary.IsSolutionUsable()) out.problem = summary.BriefReport();
+  out.problem = solved(problem);
   for (std::size_t i = 0; i < poses.size(); ++i)
     if (touched[i]) shifted_from_node[i] = transform_of(poses[i]);
   out.root_from_node = std::move(shifted_from_node);

@@ -223,13 +223,15 @@ class SurveyGraph {
       const std::size_t count = summary.dimension == 0 ? 0 : summary.descriptors.size() / summary.dimension;
       inputs.push_back({scan.id, scan.ref.name, summary.descriptors, count, std::nullopt});
     }
-    std::vector<std::pair<int, int>> glances = pairs_to_screen(inputs, settings_.candidates);
-    std::erase_if(glances, [&](const auto& pair) {  // a look ahead may not know a scan
-      return !plan_of_.contains(pair.first) || !plan_of_.contains(pair.second);
-    });
     const ModelSources sources = model_sources();
     CandidateGraph graph =
-        propose_candidates(inputs, settings_.candidates, screen_pairs(glances, sources, events_, stop_));
+        propose_candidates(inputs, settings_.candidates, [&](std::span<const std::pair<int, int>> wanted) {
+          std::vector<std::pair<int, int>> pairs(wanted.begin(), wanted.end());
+          std::erase_if(pairs, [&](const auto& pair) {  // a look ahead may not know a scan
+            return !plan_of_.contains(pair.first) || !plan_of_.contains(pair.second);
+          });
+          return screen_pairs(pairs, sources, events_, stop_);
+        });
     for (const std::string& warning : graph.warnings) warn(warning);
     rounds_ = std::make_unique<PairRounds>(std::move(graph), settings_.candidates, inputs.size());
     for (ScanOutcome& scan : out_.scans) {

@@ -24,7 +24,8 @@ using Pair = std::pair<int, int>;  // positions among the scans sorted by name, 
 /// The scans sorted by name (byte by byte, as ids are), and what every choice needs to know of their pairs.
 struct Survey {
   std::vector<const CandidateInput*> scans;
-  std::vector<double> scores;  // n x n, symmetric
+  std::vector<double> likeness;  // n x n, symmetric
+  std::vector<double> scores;    // likewise: likeness, glances and distance together
   CandidateOptions options;
 
   [[nodiscard]] int size() const { return static_cast<int>(scans.size()); }
@@ -57,36 +58,37 @@ double neighbour_distance_m(const Survey& survey) {
   return kth[kth.size() / 2];
 }
 
-/// Where there was a glance it decides, and likeness only between equals.
-constexpr double kLikenessBesideGlance = 0.1;
-
-void compute_scores(Survey& survey, std::span<const ScreenedPair> screened) {
-  std::map<Pair, double> promise;
-  std::map<int, int> place_of_id;
-  for (int i = 0; i < survey.size(); ++i) place_of_id[survey.scans[i]->id] = i;
-  for (const ScreenedPair& s : screened)
-    promise[std::minmax(place_of_id.at(s.source), place_of_id.at(s.target))] = std::max(0.0, s.score);
-
+void compare(Survey& survey) {
   std::vector<survey::DescriptorView> views;
   for (const CandidateInput* scan : survey.scans) views.push_back({scan->descriptors, scan->num_keypoints});
   const std::vector<survey::WordBag> bags = survey::weighted_bags(views);
-  const double typical_m = neighbour_distance_m(survey);
   const std::size_t n = survey.scans.size();
-  survey.scores.assign(n * n, 0.0);
+  survey.likeness.assign(n * n, 0.0);
   parallel_for_index(n, 1, [&](std::size_t a) {
-    for (std::size_t b = 0; b < n; ++b) {
-      if (a == b) continue;
-      // The smaller index first, so that both halves hold the same bits.
-      double score = survey::likeness(bags[std::min(a, b)], bags[std::max(a, b)]);
-      if (!promise.empty()) {
-        const auto glance = promise.find(std::minmax(static_cast<int>(a), static_cast<int>(b)));
-        score = kLikenessBesideGlance * score + (glance != promise.end() ? glance->second : 0.0);
-      }
-      const std::optional<double> d = survey.distance_m(static_cast<int>(a), static_cast<int>(b));
-      if (d && typical_m > 0) score = (score + 1.0) / (2.0 * (1.0 + *d * *d / (typical_m * typical_m)));
-      survey.scores[a * n + b] = score;
-    }
+    // The smaller index first, so that both halves hold the same bits.
+    for (std::size_t b = 0; b < n; ++b)
+      if (a != b) survey.likeness[a * n + b] = survey::likeness(bags[std::min(a, b)], bags[std::max(a, b)]);
   });
+}
+
+/// Likeness, and beside glances little of it: where there was a glance it decides, and likeness only between equals.
+void compute_scores(Survey& survey, const std::map<Pair, double>& glances) {
+  constexpr double kLikenessBesideGlance = 0.1;
+  const double typical_m = neighbour_distance_m(survey);
+  survey.scores.assign(survey.likeness.size(), 0.0);
+  for (int a = 0; a < survey.size(); ++a)
+    for (int b = 0; b < survey.size(); ++b) {
+      if (a == b) continue;
+      const std::size_t at = static_cast<std::size_t>(a) * survey.scans.size() + static_cast<std::size_t>(b);
+      double score = survey.likeness[at];
+      if (!glances.empty()) {
+        const auto glance = glances.find(std::minmax(a, b));
+        score = kLikenessBesideGlance * score + (glance != glances.end() ? glance->second : 0.0);
+      }
+      const std::optional<double> d = survey.distance_m(a, b);
+      if (d && typical_m > 0) score = (score + 1.0) / (2.0 * (1.0 + *d * *d / (typical_m * typical_m)));
+      survey.scores[at] = score;
+    }
 }
 
 void add(std::map<Pair, const char*>& chosen, int a, int b, const char* why) {
@@ -162,15 +164,19 @@ std::vector<Candidate> ranked(const Survey& survey, const std::map<Pair, const c
   return out;
 }
 
-Survey compared(std::span<const CandidateInput> scans, const CandidateOptions& options,
-                std::span<const ScreenedPair> screened) {
-  Survey survey;
-  survey.options = options;
-  for (const CandidateInput& scan : scans) survey.scans.push_back(&scan);
-  std::sort(survey.scans.begin(), survey.scans.end(),
-            [](const CandidateInput* a, const CandidateInput* b) { return a->name < b->name; });
-  compute_scores(survey, screened);
-  return survey;
+/// What glances at each scan's most alike find.
+std::map<Pair, double> glances_at(const Survey& survey, const CastGlances& cast) {
+  std::map<Pair, const char*> chosen;
+  add_most_alike(survey, static_cast<std::size_t>(survey.options.screened_per_scan), chosen);
+  std::vector<std::pair<int, int>> pairs;
+  for (const auto& [pair, why] : chosen)
+    pairs.emplace_back(survey.scans[pair.second]->id, survey.scans[pair.first]->id);
+  std::map<int, int> place_of_id;
+  for (int i = 0; i < survey.size(); ++i) place_of_id[survey.scans[i]->id] = i;
+  std::map<Pair, double> found;
+  for (const ScreenedPair& s : cast(pairs))
+    found[std::minmax(place_of_id.at(s.source), place_of_id.at(s.target))] = std::max(0.0, s.score);
+  return found;
 }
 
 }  // namespace
@@ -198,27 +204,23 @@ bool natural_less(std::string_view a, std::string_view b) {
   return a < b;  // equal but for leading zeros
 }
 
-std::vector<std::pair<int, int>> pairs_to_screen(std::span<const CandidateInput> scans,
-                                                 const CandidateOptions& options) {
-  if (options.only_groups || static_cast<int>(scans.size()) <= options.all_pairs_up_to) return {};
-  const Survey survey = compared(scans, options, {});
-  std::map<Pair, const char*> chosen;
-  add_most_alike(survey, static_cast<std::size_t>(options.screened_per_scan), chosen);
-  std::vector<std::pair<int, int>> pairs;
-  for (const auto& [pair, why] : chosen)
-    pairs.emplace_back(survey.scans[pair.second]->id, survey.scans[pair.first]->id);
-  return pairs;
-}
-
 CandidateGraph propose_candidates(std::span<const CandidateInput> scans, const CandidateOptions& options,
-                                  std::span<const ScreenedPair> screened) {
-  const Survey survey = compared(scans, options, screened);
+                                  const CastGlances& cast) {
+  Survey survey;
+  survey.options = options;
+  for (const CandidateInput& scan : scans) survey.scans.push_back(&scan);
+  std::sort(survey.scans.begin(), survey.scans.end(),
+            [](const CandidateInput* a, const CandidateInput* b) { return a->name < b->name; });
+  compare(survey);
+  compute_scores(survey, {});
+  const bool all_pairs = survey.size() <= options.all_pairs_up_to;
+  if (cast && !all_pairs && !options.only_groups) compute_scores(survey, glances_at(survey, cast));
   CandidateGraph graph;
   std::map<Pair, const char*> chosen;
   add_groups(survey, chosen, graph.warnings);
   if (!options.only_groups) {
     add_file_order(survey, chosen);
-    if (survey.size() <= options.all_pairs_up_to) {
+    if (all_pairs) {
       for (int a = 0; a < survey.size(); ++a)
         for (int b = a + 1; b < survey.size(); ++b)
           if (survey.allowed(a, b)) add(chosen, a, b, "all pairs");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -53,17 +54,17 @@ struct ScreenedPair {
   double score = 0;
 };
 
-/// The pairs that deserve a glance before any is registered: each scan's `screened_per_scan` most alike, unless all
-/// pairs are tried anyway or nothing but groups is wanted. Ascending by the scans' names.
-std::vector<std::pair<int, int>> pairs_to_screen(std::span<const CandidateInput> scans,
-                                                 const CandidateOptions& options);
+/// Casts glances at pairs (source, target) of ids; pairs about which a glance says nothing are missing from the answer.
+using CastGlances = std::function<std::vector<ScreenedPair>(std::span<const std::pair<int, int>>)>;
 
 /// Bags of visual words compared by tf-idf (Sivic, Zisserman 2003); a word is the signs of a descriptor's distances to
 /// random planes from a fixed seed (locality-sensitive hashing, Charikar 2002), so nothing is trained. The same graph
 /// for any order of the inputs and any thread count. Precondition: equal dimensions, unique ids and names.
-/// `screened` raises the promise of pairs; those without a glance keep a little of their likeness.
+/// Unless all pairs are tried anyway, or nothing but groups is wanted, `cast` is asked once about each scan's
+/// `screened_per_scan` most alike, ascending by the scans' names: what it finds raises their promise, the others keep a
+/// little of their likeness.
 CandidateGraph propose_candidates(std::span<const CandidateInput> scans, const CandidateOptions& options,
-                                  std::span<const ScreenedPair> screened = {});
+                                  const CastGlances& cast = {});
 
 /// Names as people sort them: runs of digits compare as numbers ("s2" before "s10").
 bool natural_less(std::string_view a, std::string_view b);

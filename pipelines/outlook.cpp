@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <oneapi/tbb/task_arena.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -14,7 +13,6 @@
 #include "config/describe.h"
 #include "pipelines/code_versions.h"
 #include "pipelines/pair_stage.h"
-#include "pipelines/planning.h"
 #include "pipelines/run_job.h"
 #include "pipelines/survey_pipeline.h"
 #include "store/journal.h"
@@ -193,13 +191,13 @@ std::size_t most_pairs(std::size_t scans, const CandidateOptions& options) {
 
 void look(const Job& job, const std::vector<io::ListedScan>& scans, const store::Store& store, Outlook& out) {
   const std::atomic<bool> never_stop{false};
-  const SurveyPlan plan = plan_survey(scans, job.settings, store, {}, never_stop, Share::nothing());
+  const SurveyOutcome survey = run_survey(scans, job.settings, store, {}, never_stop, Share::nothing());
+  const SurveyPlan& plan = survey.plan;
   out.num_scans = scans.size();
   out.voxel_m = plan.voxel_m;
   const Reasons reasons(job, plan.voxel_m);
   std::vector<const ScanPlan*> to_make;
   look_at_scans(plan, scans, store, reasons, out, to_make);
-  const SurveyOutcome survey = run_survey(scans, job.settings, store, {}, never_stop, Share::nothing());
   const bool all_pairs = out.num_scans <= static_cast<std::size_t>(job.settings.candidates.all_pairs_up_to);
   out.pairs_are_known = out.scans_to_make == 0 || (all_pairs && out.scans_found > 0);
   if (out.pairs_are_known) {
@@ -228,8 +226,7 @@ Result<Outlook> look_ahead(const Job& job) {
   Result<store::Store> store = store::Store::none();
   if (fs::is_directory(store_folder(job), error)) store = store::Store::open(store_folder(job), {});
   if (!store) return tl::unexpected(store.error());
-  oneapi::tbb::task_arena arena(threads_of(job.settings.run));
-  arena.execute([&] { look(job, listing->scans, *store, out); });
+  look(job, listing->scans, *store, out);
   return out;
 }
 

@@ -453,7 +453,8 @@ SurveyOutcome run_survey(const std::vector<io::ListedScan>& scans, const Setting
   const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);
   oneapi::tbb::task_arena arena(static_cast<int>(threads));
   arena.execute([&] {
-    const SurveyPlan plan = plan_survey(scans, settings, store, events, stop, share);
+    out.plan = plan_survey(scans, settings, store, events, stop, share);
+    const SurveyPlan& plan = out.plan;
     out.voxel_m = out.graph.voxel_m = plan.voxel_m;
     out.automatic_voxel = plan.automatic_voxel;
     for (const FailedScan& failed : plan.failed) {

@@ -88,12 +88,7 @@ bool is_held(const fs::path& out) {
   return held || shared;
 }
 
-std::string clock_text(double seconds) {
-  const auto whole = static_cast<long long>(std::max(0.0, std::round(seconds)));
-  if (whole < 60) return fmt::format("{} s", whole);
-  if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
-  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
-}
+std::string rounded(double seconds) { return clock_text(static_cast<long long>(std::max(0.0, std::round(seconds)))); }
 
 std::string stage_words(const std::string& stage) {
   static const std::map<std::string, std::string> kWords = {{"look", "scans looked at"},
@@ -109,15 +104,15 @@ std::string stage_text(const StageProgress& stage) {
   if (stage.done >= stage.total || stage.per_second <= 0) return text;
   constexpr double kSecondsPerMinute = 60;
   const double left = static_cast<double>(stage.total - stage.done) / stage.per_second;
-  return text + fmt::format(" {:.3g}/min, {} left", kSecondsPerMinute * stage.per_second, clock_text(left));
+  return text + fmt::format(" {:.3g}/min, {} left", kSecondsPerMinute * stage.per_second, rounded(left));
 }
 
 std::string in_flight_text(const NightProcess& process, double now) {
   std::string text;
   for (std::size_t k = 0; k < std::min(kShownInFlight, process.in_flight.size()); ++k) {
     const WorkInFlight& work = process.in_flight[k];
-    text += fmt::format("{}{} ({}, {})", k == 0 ? "  in work: " : ", ", work.item, work.stage,
-                        clock_text(now - work.since));
+    text +=
+        fmt::format("{}{} ({}, {})", k == 0 ? "  in work: " : ", ", work.item, work.stage, rounded(now - work.since));
   }
   if (process.in_flight.size() > kShownInFlight)
     text += fmt::format(" and {} more", process.in_flight.size() - kShownInFlight);
@@ -127,7 +122,7 @@ std::string in_flight_text(const NightProcess& process, double now) {
 std::string end_text(const NightProcess& process, double now) {
   switch (process.end) {
     case NightEnd::none:
-      return fmt::format("last sign of life {} ago", clock_text(now - process.last_line));
+      return fmt::format("last sign of life {} ago", rounded(now - process.last_line));
     case NightEnd::ended:
       return "ended: " + process.last_words;
     case NightEnd::stopped:
@@ -139,6 +134,12 @@ std::string end_text(const NightProcess& process, double now) {
 }
 
 }  // namespace
+
+std::string clock_text(long long whole_seconds) {
+  if (whole_seconds < 60) return fmt::format("{} s", whole_seconds);
+  if (whole_seconds < 3600) return fmt::format("{}:{:02}", whole_seconds / 60, whole_seconds % 60);
+  return fmt::format("{}:{:02}:{:02}", whole_seconds / 3600, whole_seconds / 60 % 60, whole_seconds % 60);
+}
 
 store::JournalLine progress_line(const std::string& stage, std::size_t done, std::size_t total) {
   return {0, "progress", stage, "", fmt::format("{}/{}", done, total), 0};
@@ -178,7 +179,7 @@ std::string text_of(const std::vector<NightProcess>& night, double now) {
   std::string text;
   for (const NightProcess& process : night) {
     const double until = process.end == NightEnd::none ? now : process.last_line;
-    text += fmt::format("{}, {}, {}\n", process.command, clock_text(until - process.began), end_text(process, now));
+    text += fmt::format("{}, {}, {}\n", process.command, rounded(until - process.began), end_text(process, now));
     for (const StageProgress& stage : process.stages) text += stage_text(stage) + "\n";
     if (process.end != NightEnd::ended && !process.in_flight.empty()) {
       text.append(in_flight_text(process, process.end == NightEnd::none ? now : process.last_line));

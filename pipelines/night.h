@@ -57,6 +57,9 @@ std::vector<NightProcess> read_night(const std::filesystem::path& out);
 /// What a person wants to know, a few lines; `now` in seconds since 1970.
 std::string text_of(const std::vector<NightProcess>& night, double now);
 
+/// "45 s", "3:20", "1:03:20".
+std::string clock_text(long long whole_seconds);
+
 /// Of the whole: none while one works, else the worst.
 NightEnd end_of(const std::vector<NightProcess>& night);
 

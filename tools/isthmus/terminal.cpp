@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <map>
 
+#include "pipelines/night.h"
+
 namespace isthmus::cli {
 namespace {
 
@@ -24,12 +26,7 @@ std::string words_of(const std::string& stage) {
 
 }  // namespace
 
-std::string duration_text(double seconds) {
-  const auto whole = static_cast<long>(std::ceil(seconds));
-  if (whole < 60) return fmt::format("{} s", whole);
-  if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
-  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
-}
+std::string duration_text(double seconds) { return pipelines::clock_text(static_cast<long long>(std::ceil(seconds))); }
 
 Terminal::Terminal() : is_terminal_(::isatty(STDERR_FILENO) == 1) {}
 

@@ -8,13 +8,12 @@
 #include "io/e57/e57_poses.h"
 #include "io/e57/e57_writer.h"
 #include "io/wording.h"
+#include "pipelines/export_scans.h"
 
 namespace isthmus::pipelines {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kChunkPoints = std::size_t{1} << 16;
 
 Result<void> append_scan(io::E57Writer& writer, const PlacedScan& placed) {
   auto reader = io::open_scan(placed.scan);
@@ -24,11 +23,7 @@ Result<void> append_scan(io::E57Writer& writer, const PlacedScan& placed) {
   auto begun = writer.begin_scan(
       {placed.scan.name, {}, placed.file_from_scan, !origin.isZero(0.0), header.has_intensity, header.has_colour});
   if (!begun) return begun;
-  for (PointChunk chunk;;) {
-    if (auto read = (*reader)->read(chunk, kChunkPoints); !read) return read;
-    if (chunk.points.empty()) return {};
-    if (auto added = writer.add(chunk, origin); !added) return added;
-  }
+  return each_chunk(**reader, [&](const PointChunk& chunk) { return writer.add(chunk, origin); });
 }
 
 bool is_e57(const fs::path& path) { return io::lower_case(path.extension().string()) == ".e57"; }
@@ -45,12 +40,9 @@ Result<void> copy_e57(const fs::path& from, const fs::path& to, const std::vecto
 }
 
 Result<void> write_one(const fs::path& path, const std::vector<PlacedScan>& scans) {
-  std::error_code ignored;
+  const auto file_of = [](const PlacedScan& placed) { return placed.scan.path; };
+  if (auto good = check_export(path, scans, file_of); !good) return good;
   const fs::path& first = scans.front().scan.path;
-  for (const PlacedScan& placed : scans) {
-    if (!fs::equivalent(placed.scan.path, path, ignored)) continue;
-    return fail("this is a scan of the survey, which would be overwritten", path.string(), "name another place");
-  }
   const bool one_file =
       std::all_of(scans.begin(), scans.end(), [&](const PlacedScan& placed) { return placed.scan.path == first; });
   if (one_file && is_e57(first)) return copy_e57(first, path, scans);
@@ -65,7 +57,6 @@ Result<void> write_one(const fs::path& path, const std::vector<PlacedScan>& scan
 }  // namespace
 
 Result<void> export_e57_file(const fs::path& path, const std::vector<PlacedScan>& scans) {
-  if (scans.empty()) return fail("there is no scan to export", path.string());
   return write_one(path, scans);
 }
 

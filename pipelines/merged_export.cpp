@@ -5,6 +5,7 @@
 
 #include "io/cloud_writer.h"
 #include "io/wording.h"
+#include "pipelines/export_scans.h"
 #include "pipelines/occupied_voxels.h"
 
 namespace isthmus::pipelines {
@@ -12,25 +13,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kChunkPoints = std::size_t{1} << 16;
-
-/// Calls take(chunk) for every chunk of the scan.
-template <class Take>
-Result<void> each_chunk(const io::ScanRef& scan, const Take& take) {
-  auto reader = io::open_scan(scan);
-  if (!reader) return tl::unexpected(std::move(reader.error()));
-  for (PointChunk chunk;;) {
-    if (auto read = (*reader)->read(chunk, kChunkPoints); !read) return read;
-    if (chunk.points.empty()) return {};
-    if (auto taken = take((*reader)->header(), chunk); !taken) return taken;
-  }
-}
-
 /// What LAS multiplies intensities by: nobody says in which unit they are, but shares of one are common.
 Result<float> las_intensity_scale(const io::ScanRef& scan) {
   constexpr float kMost = 65535;
   float largest = 0;
-  auto done = each_chunk(scan, [&](const ScanHeader&, const PointChunk& chunk) -> Result<void> {
+  auto reader = io::open_scan(scan);
+  if (!reader) return tl::unexpected(std::move(reader.error()));
+  auto done = each_chunk(**reader, [&](const PointChunk& chunk) -> Result<void> {
     for (const float value : chunk.intensity) largest = std::isfinite(value) ? std::max(largest, value) : largest;
     return {};
   });
@@ -54,10 +43,13 @@ Result<io::CloudShape> shape_of(const std::vector<SourcedScan>& scans) {
 
 Result<void> append_scan(io::CloudWriter& writer, const SourcedScan& scan, float intensity_scale,
                          OccupiedVoxels* seen) {
-  return each_chunk(scan.placed.scan, [&](const ScanHeader& header, const PointChunk& chunk) -> Result<void> {
-    const Transform file_from_local = scan.placed.file_from_scan * Eigen::Translation3d(header.local_origin_in_scan);
-    // The reader's origin stands for "nothing was measured", see VoxelSampler.
-    const Eigen::Vector3f nothing = (-header.local_origin_in_scan).cast<float>();
+  auto reader = io::open_scan(scan.placed.scan);
+  if (!reader) return tl::unexpected(std::move(reader.error()));
+  const ScanHeader& header = (*reader)->header();
+  const Transform file_from_local = scan.placed.file_from_scan * Eigen::Translation3d(header.local_origin_in_scan);
+  // The reader's origin stands for "nothing was measured", see VoxelSampler.
+  const Eigen::Vector3f nothing = (-header.local_origin_in_scan).cast<float>();
+  return each_chunk(**reader, [&](const PointChunk& chunk) -> Result<void> {
     for (std::size_t i = 0; i < chunk.points.size(); ++i) {
       if (!chunk.points[i].allFinite() || chunk.points[i] == nothing) continue;
       io::CloudPoint point;
@@ -76,12 +68,8 @@ Result<void> append_scan(io::CloudWriter& writer, const SourcedScan& scan, float
 
 Result<std::uint64_t> export_merged(const fs::path& path, const std::vector<SourcedScan>& scans,
                                     std::optional<double> voxel_m) {
-  if (scans.empty()) return fail("there is no scan to export", path.string());
-  std::error_code ignored;
-  for (const SourcedScan& scan : scans) {
-    if (!fs::equivalent(scan.placed.scan.path, path, ignored)) continue;
-    return fail("this is a scan of the survey, which would be overwritten", path.string(), "name another place");
-  }
+  const auto file_of = [](const SourcedScan& scan) { return scan.placed.scan.path; };
+  if (auto good = check_export(path, scans, file_of); !good) return tl::unexpected(std::move(good.error()));
   auto shape = shape_of(scans);
   if (!shape) return tl::unexpected(std::move(shape.error()));
   auto writer = io::CloudWriter::create(path, *shape);

@@ -64,6 +64,18 @@ TEST(Verdict, ADirectionThatNothingFixesIsAmbiguousWithoutAnyNeighbour) {
   EXPECT_EQ(result.verdict, Verdict::accepted) << result.reason;
 }
 
+TEST(Verdict, MuchAgainstAPoseLeavesItToTheLoops) {
+  PairEvidence e = good_evidence();
+  e.support = 0.29, e.contradiction = 0.022;
+  PairResult result;
+  judge(e, PairOptions{}, result);
+  EXPECT_EQ(result.verdict, Verdict::ambiguous);
+  EXPECT_NE(result.reason.find("saw through"), std::string::npos) << result.reason;
+  e.contradiction = 0.015;
+  judge(e, PairOptions{}, result);
+  EXPECT_EQ(result.verdict, Verdict::accepted) << result.reason;
+}
+
 TEST(Verdict, ARivalIsNamedByWhereItLies) {
   PairEvidence e = good_evidence();
   e.rival_score = 0.9 * e.score, e.rival_voxels = 42, e.rival_deg = 91;

@@ -9,47 +9,20 @@
 #include <utility>
 
 #include "pairwise/judge.h"
+#include "pipelines/part_joins.h"
 
 namespace isthmus::pipelines {
 namespace {
 
-constexpr std::size_t kWitnesses = 12;          // pairs across a link
-constexpr double kLeastPredictedOverlap = 0.1;  // of a witness: what hardly meets says nothing
-constexpr int kReach = 2;                       // links from an end to a witness
-
+constexpr std::size_t kWitnesses = 12;    // pairs across a link
+constexpr int kReach = 2;                 // links from an end to a witness
 constexpr double kTellingSupport = 0.05;  // a pair that neither meets nor contradicts says nothing
 
 bool believed(const SolvedLink& l) { return l.link.result.verdict == Verdict::accepted; }
 
-using Neighbours = std::map<int, std::vector<int>>;
-
-/// Links that were found without being told where to look.
-Neighbours neighbours_without(const Solution& solution, const Link& left_out) {
-  Neighbours out;
-  for (const SolvedLink& l : solution.links) {
-    if (!believed(l) || l.link.guided || &l.link == &left_out) continue;
-    out[l.link.source].push_back(l.link.target);
-    out[l.link.target].push_back(l.link.source);
-  }
-  return out;
-}
-
-/// Scans that hang together with `from`, and over how many links.
-std::map<int, int> distances(const Neighbours& neighbours, int from) {
-  std::map<int, int> distance{{from, 0}};
-  std::vector<int> front{from};
-  while (!front.empty()) {
-    std::vector<int> next;
-    for (const int a : front) {
-      const auto of_a = neighbours.find(a);
-      if (of_a == neighbours.end()) continue;
-      for (const int b : of_a->second)
-        if (distance.try_emplace(b, distance[a] + 1).second) next.push_back(b);
-    }
-    front = std::move(next);
-  }
-  return distance;
-}
+/// Believed on its own word: neither told where to look nor ambiguous until others agreed. Where rooms repeat,
+/// ambiguous links agree with the wrong one.
+bool strong(const SolvedLink& l) { return believed(l) && !l.link.guided && l.measured == Verdict::accepted; }
 
 /// What lies on either side of a link that nothing else spans; absent for a link on a loop.
 struct Sides {
@@ -58,32 +31,19 @@ struct Sides {
     return (of_source.contains(a) && of_target.contains(b)) || (of_source.contains(b) && of_target.contains(a));
   }
 };
-std::optional<Sides> sides_of(const Solution& solution, const Link& link) {
-  const Neighbours neighbours = neighbours_without(solution, link);
-  Sides sides{distances(neighbours, link.source), {}};
-  if (sides.of_source.contains(link.target)) return std::nullopt;
-  sides.of_target = distances(neighbours, link.target);
+std::optional<Sides> sides_of(const Solution& solution, const SolvedLink& link) {
+  const auto others = [&](const SolvedLink& l) { return strong(l) && &l != &link; };
+  Sides sides{link_distances(solution, link.link.source, others), {}};
+  if (sides.of_source.contains(link.link.target)) return std::nullopt;
+  sides.of_target = link_distances(solution, link.link.target, others);
   return sides;
 }
 
-/// Pairs near the link and across it, by predicted overlap; the link's own is left out.
-std::vector<PosedPair> witnesses_of(const Solution& solution, const std::map<int, const ScanSummary*>& summaries,
-                                    const Sides& sides) {
-  std::vector<std::pair<double, PosedPair>> found;
-  for (const auto& [a, to_a] : sides.of_source)
-    for (const auto& [b, to_b] : sides.of_target) {
-      if (to_a > kReach || to_b > kReach || (to_a == 0 && to_b == 0)) continue;
-      const int source = std::max(a, b), target = std::min(a, b);
-      const auto predicted = predicted_target_from_source(solution, source, target);
-      if (!predicted || !summaries.contains(source) || !summaries.contains(target)) continue;
-      const double overlap = predicted_overlap(*summaries.at(source), *summaries.at(target), *predicted);
-      if (overlap >= kLeastPredictedOverlap) found.push_back({overlap, {source, target, *predicted}});
-    }
-  std::ranges::stable_sort(found, std::ranges::greater(), [](const auto& f) { return f.first; });
-  if (found.size() > kWitnesses) found.resize(kWitnesses);
-  std::vector<PosedPair> pairs;
-  for (auto& [overlap, pair] : found) pairs.push_back(pair);
-  return pairs;
+PosedPair posed(const GuidedPair& pair) { return {pair.source, pair.target, pair.target_from_source}; }
+
+/// The first few of pairs that are sorted by predicted overlap.
+std::span<const GuidedPair> first_witnesses(const std::vector<GuidedPair>& across) {
+  return std::span(across).first(std::min(across.size(), kWitnesses));
 }
 
 struct Suspect {
@@ -104,13 +64,12 @@ struct Testimony {
   }
 };
 
-Testimony testimony_against(const Suspect& suspect, std::span<const PosedPair> pairs,
-                            std::span<const std::optional<PoseCheck>> checks) {
+/// `about` says whether a pair has a say.
+Testimony testimony_of(std::span<const PosedPair> pairs, std::span<const std::optional<PoseCheck>> checks,
+                       const std::function<bool(const PosedPair&)>& about) {
   Testimony said;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const Link& link = suspect.link->link;
-    const bool own = std::minmax(pairs[k].source, pairs[k].target) == std::minmax(link.source, link.target);
-    if (!checks[k] || own || !suspect.sides.separate(pairs[k].source, pairs[k].target)) continue;
+    if (!checks[k] || !about(pairs[k])) continue;
     const bool forbidden = checks[k]->forbidden();
     if (!forbidden && checks[k]->support < kTellingSupport) continue;
     ++said.num_telling;
@@ -125,21 +84,32 @@ std::string name_of(std::span<const OutlinedScan> scans, int id) {
   return at != scans.end() && at->id == id && !at->name.empty() ? at->name : std::to_string(id);
 }
 
+std::string text_of(const Testimony& said, const PosedPair& clearest, const PoseCheck& check,
+                    std::span<const OutlinedScan> scans) {
+  return fmt::format(
+      "with it {} of {} pairs across it would stand where the other saw through, {} and {} with {:.0f} % of their "
+      "points",
+      said.num_forbidden, said.num_telling, name_of(scans, clearest.source), name_of(scans, clearest.target),
+      100 * check.contradiction);
+}
+
 }  // namespace
 
 std::vector<RefutedLink> refuted_bridge(const Solution& solution, std::span<const OutlinedScan> scans,
                                         const PoseChecker& check) {
-  std::map<int, const ScanSummary*> summaries;
-  for (const OutlinedScan& scan : scans) summaries[scan.id] = scan.summary;
+  const Summaries summaries = summaries_of(scans);
   std::vector<PosedPair> pairs;
   std::set<std::pair<int, int>> known;
   std::vector<Suspect> suspects;
   for (const SolvedLink& solved : solution.links) {
-    if (!believed(solved) || solved.in_loop) continue;
-    auto sides = sides_of(solution, solved.link);
+    if (!believed(solved) || solved.link.guided) continue;
+    auto sides = sides_of(solution, solved);
     if (!sides) continue;
-    for (const PosedPair& pair : witnesses_of(solution, summaries, *sides))
-      if (known.emplace(pair.source, pair.target).second) pairs.push_back(pair);
+    const std::vector<GuidedPair> across =
+        pairs_across(sides->of_source, sides->of_target, summaries, kReach,
+                     [&](int source, int target) { return predicted_target_from_source(solution, source, target); });
+    for (const GuidedPair& pair : first_witnesses(across))
+      if (known.emplace(pair.source, pair.target).second) pairs.push_back(posed(pair));
     suspects.push_back({&solved, std::move(*sides)});
   }
   if (pairs.empty()) return {};
@@ -147,7 +117,11 @@ std::vector<RefutedLink> refuted_bridge(const Solution& solution, std::span<cons
   const Suspect* accused = nullptr;
   Testimony worst;
   for (const Suspect& suspect : suspects) {
-    const Testimony said = testimony_against(suspect, pairs, checks);
+    const Link& accused_link = suspect.link->link;
+    const Testimony said = testimony_of(pairs, checks, [&](const PosedPair& pair) {
+      return std::minmax(pair.source, pair.target) != std::minmax(accused_link.source, accused_link.target) &&
+             suspect.sides.separate(pair.source, pair.target);
+    });
     if (!said.refutes()) continue;
     const auto weight = [](const Testimony& t, const Suspect& of) {
       const PairResult& own = of.link->link.result;
@@ -159,20 +133,41 @@ std::vector<RefutedLink> refuted_bridge(const Solution& solution, std::span<cons
   }
   if (accused == nullptr) return {};
   const Link& wrong = accused->link->link;
-  const PosedPair& clearest = pairs[worst.clearest];
   std::vector<RefutedLink> refuted{
-      {wrong.source, wrong.target,
-       fmt::format(
-           "with it {} of {} pairs across it would stand where the other saw through, {} and {} with {:.0f} % of "
-           "their points",
-           worst.num_forbidden, worst.num_telling, name_of(scans, clearest.source), name_of(scans, clearest.target),
-           100 * checks[worst.clearest]->contradiction)}};
+      {wrong.source, wrong.target, text_of(worst, pairs[worst.clearest], *checks[worst.clearest], scans)}};
   for (const SolvedLink& l : solution.links) {
-    if (!believed(l) || !l.link.guided || &l == accused->link) continue;
+    if (!believed(l) || &l == accused->link) continue;
     if (!accused->sides.separate(l.link.source, l.link.target)) continue;
     refuted.push_back({l.link.source, l.link.target,
-                       fmt::format("found where {} - {} pointed, and {}", name_of(scans, wrong.source),
+                       fmt::format("believed where {} - {} pointed, and {}", name_of(scans, wrong.source),
                                    name_of(scans, wrong.target), refuted.front().reason)});
+  }
+  return refuted;
+}
+
+std::vector<RefutedLink> refuted_joins(const Solution& solution, std::span<const OutlinedScan> scans,
+                                       const PoseChecker& check) {
+  const std::vector<PartJoin> joins = possible_joins(solution, summaries_of(scans));
+  std::vector<PosedPair> pairs;
+  std::vector<std::size_t> begin;  // of each join's pairs
+  for (const PartJoin& join : joins) {
+    begin.push_back(pairs.size());
+    // One that free space forbids has no vote: nothing is lost by it.
+    if (forbidden_by_free_space(join.link->link.result)) continue;
+    for (const GuidedPair& pair : first_witnesses(join.across)) pairs.push_back(posed(pair));
+  }
+  begin.push_back(pairs.size());
+  if (pairs.empty()) return {};
+  const std::vector<std::optional<PoseCheck>> checks = check(pairs);
+  std::vector<RefutedLink> refuted;
+  for (std::size_t k = 0; k < joins.size(); ++k) {
+    const auto own_pairs = std::span(pairs).subspan(begin[k], begin[k + 1] - begin[k]);
+    const auto own_checks = std::span(checks).subspan(begin[k], own_pairs.size());
+    const Testimony said = testimony_of(own_pairs, own_checks, [](const PosedPair&) { return true; });
+    if (!said.refutes()) continue;
+    const Link& link = joins[k].link->link;
+    refuted.push_back(
+        {link.source, link.target, text_of(said, own_pairs[said.clearest], *own_checks[said.clearest], scans)});
   }
   return refuted;
 }

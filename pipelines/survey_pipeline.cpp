@@ -326,13 +326,19 @@ class SurveyGraph {
       out_.graph = graph_of_results();
       out_.solution = solve(out_.graph, settings_.solve);
       if (stop_) return;
-      bool found = false;
-      for (const RefutedLink& refuted : refuted_bridge(out_.solution, outlined_scans(), check)) {
-        const auto at = index_of_pair_.find(std::minmax(refuted.source, refuted.target));
-        found = out_.pairs[at->second].refute(refuted.reason) || found;
-      }
-      if (!found) return;
+      if (take_out(refuted_bridge(out_.solution, outlined_scans(), check))) continue;
+      if (!take_out(refuted_joins(out_.solution, outlined_scans(), check))) return;
     }
+  }
+
+  /// True if any was not known to be refuted.
+  bool take_out(const std::vector<RefutedLink>& all) {
+    bool found = false;
+    for (const RefutedLink& refuted : all) {
+      const auto at = index_of_pair_.find(std::minmax(refuted.source, refuted.target));
+      found = out_.pairs[at->second].refute(refuted.reason) || found;
+    }
+    return found;
   }
 
   [[nodiscard]] std::vector<OutlinedScan> outlined_scans() const {
@@ -351,8 +357,9 @@ class SurveyGraph {
       pair.source = planned.source;
       pair.target = planned.target;
       pair.score = planned.score;
-      pair.why = planned.why;
     }
+    PairOutcome& pair = out_.pairs[at->second];
+    (planned.second_round ? pair.second_round : pair.first_round) = true;
     return at->second;
   }
 
@@ -364,7 +371,8 @@ class SurveyGraph {
       graph.scans.push_back({scan.id, scan.ref.name, scan.summary->centre, scan.summary->radius_m});
     }
     for (const PairOutcome& pair : out_.pairs)
-      graph.links.push_back({pair.source, pair.target, pair.result, pair.guided, pair.refuted, ByHand::nothing});
+      graph.links.push_back({pair.source, pair.target, pair.result, pair.guided, pair.refuted, ByHand::nothing,
+                             pair.first_round, pair.second_round});
     return graph;
   }
 

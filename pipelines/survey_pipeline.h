@@ -35,7 +35,8 @@ struct PairOutcome {
   int source = 0;
   int target = 0;
   double score = 0;           ///< likeness from the choice of candidates
-  std::string why;            ///< why it was tried
+  bool first_round = false;   ///< tried on the promise of likeness and glances
+  bool second_round = false;  ///< tried because solved poses or links found before proposed it
   bool guided = false;        ///< the result is of the second round, with the predicted pose as an extra hypothesis
   std::size_t num_found = 0;  ///< results found in the store: a pair that is tried again with a prediction has two
   std::size_t num_made = 0;   ///< results computed in this run

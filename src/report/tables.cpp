@@ -122,6 +122,8 @@ std::string links_csv(const SurveyRecord& record) {
                            "error_before_deg",
                            "error_before_m",
                            "by_hand",
+                           "first_round",
+                           "second_round",
                            "overlap_of_source",
                            "overlap_of_target",
                            "r00",
@@ -154,7 +156,7 @@ std::string links_csv(const SurveyRecord& record) {
     csv.add(word(l.measured)).add(l.link.guided ? 1 : 0).add(l.in_loop ? 1 : 0).add(l.probability);
     add_error(csv, l.after);
     add_error(csv, l.before);
-    csv.add(word(l.link.by_hand));
+    csv.add(word(l.link.by_hand)).add(l.link.first_round ? 1 : 0).add(l.link.second_round ? 1 : 0);
     if (measured)
       csv.add(r.overlap_of_source).add(r.overlap_of_target);
     else

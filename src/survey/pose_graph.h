@@ -43,10 +43,12 @@ struct Link {
   /// Why the survey around it forbids the link, whatever the pair says; empty if nothing does. It is rejected.
   std::string refuted;
   ByHand by_hand = ByHand::nothing;  ///< a link that was taken out is not used; see hand_links.h
+  bool first_round = false;          ///< tried on the promise of likeness and glances
+  bool second_round = false;         ///< tried because solved poses or links found before proposed it
 
   template <class F>
   void fields(F&& f) {
-    f(source), f(target), f(result), f(guided), f(refuted), f(by_hand);
+    f(source), f(target), f(result), f(guided), f(refuted), f(by_hand), f(first_round), f(second_round);
   }
 };
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "pipelines/line_of_stations.h"
 
 namespace isthmus::pipelines {
@@ -13,7 +15,7 @@ struct TwoParts : LineOfStations {
   TwoParts() : LineOfStations(6, 25) {
     for (const auto& [s, t] :
          {std::pair{1, 0}, std::pair{2, 0}, std::pair{2, 1}, std::pair{4, 3}, std::pair{5, 3}, std::pair{5, 4}})
-      link(s, t, Verdict::accepted, true);
+      link(s, t, Verdict::accepted);
     link(3, 2, Verdict::accepted);
   }
 };
@@ -45,6 +47,53 @@ TEST(BridgeChecks, PairsAcrossALinkWithoutALoopAreAskedAndRefuteIt) {
   EXPECT_EQ(refuted[0].source, 3);
   EXPECT_EQ(refuted[0].target, 2);
   EXPECT_NE(refuted[0].reason.find("12 %"), std::string::npos) << refuted[0].reason;
+}
+
+/// The same triangles as two components, with ambiguous links between them: 3 -> 2 right, 5 -> 0 a room off.
+struct SplitParts : LineOfStations {
+  SplitParts() : LineOfStations(6, 25) {
+    for (const auto& [s, t] :
+         {std::pair{1, 0}, std::pair{2, 0}, std::pair{2, 1}, std::pair{4, 3}, std::pair{5, 3}, std::pair{5, 4}})
+      link(s, t, Verdict::accepted);
+    split(3);
+    ambiguous(3, 2, 0.4);
+    ambiguous(5, 0, 0.6, -30);
+  }
+};
+
+/// Whether a pair stands as the line has it.
+bool on_the_line(const PosedPair& p) {
+  return std::abs(p.target_from_source.translation().x() - 10.0 * (p.source - p.target)) < 1e-6;
+}
+
+TEST(JoinChecks, APartLaidWhereItCannotStandRefutesTheLinkThatLaidItThere) {
+  const SplitParts parts;
+  std::size_t num_asked = 0;
+  const auto check = [&](std::span<const PosedPair> pairs) {
+    std::vector<std::optional<PoseCheck>> out;
+    for (const PosedPair& p : pairs) {
+      EXPECT_TRUE(p.source >= 3 && p.target < 3) << "only pairs across";
+      out.emplace_back(on_the_line(p) ? kFine : kForbidden);
+    }
+    num_asked = pairs.size();
+    return out;
+  };
+  const auto refuted = refuted_joins(parts.solution, parts.scans, check);
+  EXPECT_GT(num_asked, 4U);
+  ASSERT_EQ(refuted.size(), 1U);
+  EXPECT_EQ(refuted[0].source, 5);
+  EXPECT_EQ(refuted[0].target, 0);
+  EXPECT_NE(refuted[0].reason.find("saw through"), std::string::npos) << refuted[0].reason;
+}
+
+TEST(JoinChecks, ALinkThatFreeSpaceForbidsByItselfIsNotAsked) {
+  SplitParts parts;
+  for (SolvedLink& l : parts.solution.links) l.link.result.evidence = {{"support", 0.3}, {"contradiction", 0.2}};
+  const auto check = [](std::span<const PosedPair>) -> std::vector<std::optional<PoseCheck>> {
+    ADD_FAILURE() << "it has no vote, so there is nothing to refute";
+    return {};
+  };
+  EXPECT_TRUE(refuted_joins(parts.solution, parts.scans, check).empty());
 }
 
 TEST(BridgeChecks, FewDoubtfulWitnessesRefuteNothing) {
@@ -80,15 +129,27 @@ TEST(BridgeChecks, WhatWasFoundWhereTheWrongLinkPointedGoesWithIt) {
   ASSERT_EQ(refuted.size(), 2U);
   EXPECT_EQ(refuted[0].source, 3);
   EXPECT_EQ(refuted[1].source, 4);
-  EXPECT_NE(refuted[1].reason.find("found where s3 - s2 pointed"), std::string::npos);
+  EXPECT_NE(refuted[1].reason.find("believed where s3 - s2 pointed"), std::string::npos);
 }
 
-TEST(BridgeChecks, LinksOnLoopsAreNotQuestioned) {
+TEST(BridgeChecks, LinksThatAnotherSpansAreNotQuestioned) {
   TwoParts parts;
-  for (SolvedLink& link : parts.solution.links) link.in_loop = true;
+  parts.link(4, 1, Verdict::accepted);
   std::vector<PosedPair> asked;
   EXPECT_TRUE(refuted_bridge(parts.solution, parts.scans, answering(asked, {kForbidden})).empty());
   EXPECT_TRUE(asked.empty());
+}
+
+// Where rooms repeat, an ambiguous link agrees with the wrong one: their loop proves nothing.
+TEST(BridgeChecks, ALoopThatClosesOnlyThroughAPromotedLinkIsQuestionedAndGoesAsAWhole) {
+  TwoParts parts;
+  parts.link(4, 1, Verdict::accepted);
+  parts.solution.links.back().measured = Verdict::ambiguous;
+  std::vector<PosedPair> asked;
+  const auto refuted = refuted_bridge(parts.solution, parts.scans, answering(asked, {kForbidden}));
+  ASSERT_EQ(refuted.size(), 2U);
+  EXPECT_EQ(std::pair(refuted[0].source, refuted[0].target), std::pair(3, 2));
+  EXPECT_EQ(std::pair(refuted[1].source, refuted[1].target), std::pair(4, 1));
 }
 
 TEST(BridgeChecks, PairsThatCannotBeCheckedSayNothing) {

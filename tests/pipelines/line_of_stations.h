@@ -28,12 +28,26 @@ struct LineOfStations {
       scans.push_back({i, &scan, fmt::format("s{}", i)});
     }
   }
-  Link& link(int source, int target, Verdict verdict, bool in_loop = false) {
+  /// Moves the scans from `first` on into a component of their own, whose frame is that of scan `first`.
+  void split(int first) {
+    for (std::size_t i = static_cast<std::size_t>(first); i < solution.scans.size(); ++i) {
+      solution.scans[i].component = 1;
+      solution.scans[i].component_from_local.translation().x() -= 10.0 * first;
+    }
+  }
+  /// An ambiguous link that would lay `source` where it stands on the line, or `off_m` away from there.
+  Link& ambiguous(int source, int target, double probability, double off_m = 0) {
+    Link& l = link(source, target, Verdict::ambiguous);
+    l.result.target_from_source = Transform(Eigen::Translation3d(10.0 * (source - target) + off_m, 0, 0));
+    l.result.probability = probability;
+    return l;
+  }
+  Link& link(int source, int target, Verdict verdict) {
     SolvedLink solved;
     solved.link.source = source;
     solved.link.target = target;
     solved.link.result.verdict = verdict;
-    solved.in_loop = in_loop;
+    solved.measured = verdict;
     solution.links.push_back(solved);
     return solution.links.back().link;
   }

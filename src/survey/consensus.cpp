@@ -58,7 +58,7 @@ std::vector<int> tree_order(const LinksInPlay& links) {
   const auto weight = [&](int e) { return own_vote(links.measurements[e]) + closing[e] * closure; };
   std::vector<int> order;
   for (const int e : links.active)
-    if (links.measurements[e].accepted || weight(e) > 0) order.push_back(e);
+    if (links.measurements[e].accepted || links.measurements[e].doubted || weight(e) > 0) order.push_back(e);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
     if (weight(a) != weight(b)) return weight(a) > weight(b);
     return links.measurements[a].overlap > links.measurements[b].overlap;
@@ -106,8 +106,14 @@ bool exchange(const LinksInPlay& links, std::vector<int>& tree) {
 }
 
 /// Every join and every exchange raises the summed votes of what agrees with the forest, so this ends.
-std::vector<int> search(const LinksInPlay& links) {
-  std::vector<int> tree = spanning_edges(links.num_nodes, links.measurements, tree_order(links));
+/// `start`: links of an earlier tree, those still in play come first.
+std::vector<int> search(const LinksInPlay& links, const std::vector<int>& start) {
+  std::vector<int> order;
+  for (const int e : start)
+    if (in(links.active, e)) order.push_back(e);
+  const std::vector<int> others = tree_order(links);
+  order.insert(order.end(), others.begin(), others.end());
+  std::vector<int> tree = spanning_edges(links.num_nodes, links.measurements, order);
   while (join_parts(links, tree) || exchange(links, tree)) {
   }
   return tree;
@@ -199,8 +205,11 @@ Consensus find_consensus(int num_nodes, std::span<const Measurement> measurement
   std::map<int, LoopRejection> rejections;
   Consensus out;
   std::vector<CutJudgement> cuts;
+  const bool any_doubted =
+      std::any_of(measurements.begin(), measurements.end(), [](const Measurement& m) { return m.doubted; });
   for (;;) {  // every turn takes links out of play
-    out.tree = search(links);
+    // Where most is doubted, turns are many and take little out each: the next search goes on from this one.
+    out.tree = search(links, any_doubted ? out.tree : std::vector<int>());
     const SpanningForest forest = forest_of(num_nodes, measurements, out.tree);
     cuts.clear();
     for (const int t : out.tree) cuts.push_back(judged(links, forest, t));
@@ -210,6 +219,10 @@ Consensus find_consensus(int num_nodes, std::span<const Measurement> measurement
   }
   for (const auto& [e, rejection] : rejections) out.rejections.push_back(rejection);
   for (const CutJudgement& cut : cuts) {
+    const std::size_t own = cut.groups.front().confirming.size();
+    out.solid = out.solid && own >= 3;
+    for (std::size_t g = 1; g < cut.groups.size(); ++g)
+      out.solid = out.solid && 2 * cut.groups[g].confirming.size() <= own;
     if (measurements[cut.tree_edge].accepted) continue;
     std::vector<int> others = cut.groups.front().confirming;
     std::erase(others, cut.tree_edge);

@@ -26,7 +26,9 @@ struct Measurement {
   double log_odds = 0;    ///< log p/(1-p) of the pair stage's probability, clipped; 0 for guided links
   bool accepted = false;  ///< by the pair stage; otherwise ambiguous
   bool votes = true;      ///< false for guided links, and for those that free space forbids
-  double overlap = 0;     ///< breaks ties
+  /// Accepted by the pair stage, whose word counts for little in this survey: treated as ambiguous.
+  bool doubted = false;
+  double overlap = 0;  ///< breaks ties
 };
 
 /// Adjoint of a transform for (translation, rotation) vectors: T exp(d) T^-1 = exp(Ad(T) d).

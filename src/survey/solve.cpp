@@ -22,6 +22,8 @@ using namespace survey;  // NOLINT: this file is the module's front door
 
 // The dense normal matrix of this many scans takes 260 MB; larger surveys do without sigmas.
 constexpr std::size_t kMaxScansForSigmas = 950;
+// Fewer links that loops could judge tell nothing about the others.
+constexpr double kFewestJudged = 8;
 // A loop named in a reason lists at most this many scans.
 constexpr std::size_t kMaxNamedScans = 8;
 
@@ -29,7 +31,7 @@ constexpr double deg(double rad) { return rad * 180.0 / std::numbers::pi; }
 
 /// Everything the steps share. Nodes are positions in `scans`, which is sorted by id.
 struct Solver {
-  const SolveOptions& options;
+  SolveOptions options;
   double voxel_m;
   std::vector<GraphScan> scans;
   std::vector<SolvedLink> links;          // sorted
@@ -39,6 +41,8 @@ struct Solver {
   std::vector<char> undecided;            // per measurement: rejected with others, any of which may be the wrong one
   std::vector<char> doubted;              // per measurement: rejected because no loop could judge it
   std::vector<std::string> warnings;
+  bool solid = true;     // Consensus::solid
+  std::string distrust;  // why no link was believed on the pair stage's word; empty if links were
 
   [[nodiscard]] int num_nodes() const { return static_cast<int>(scans.size()); }
   [[nodiscard]] SolvedLink& link_of(int e) { return links[measurements[e].link]; }
@@ -93,7 +97,7 @@ Matrix6d information_in_local(const Measurement& m, const GraphScan& source) {
 }
 
 Solver prepared(const PoseGraph& graph, const SolveOptions& options) {
-  Solver s{options, graph.voxel_m, graph.scans, {}, {}, {}, {}, {}, {}, {}};
+  Solver s{options, graph.voxel_m, graph.scans, {}, {}, {}, {}, {}, {}, {}, true, {}};
   std::sort(s.scans.begin(), s.scans.end(), [](const GraphScan& a, const GraphScan& b) { return a.id < b.id; });
   std::map<int, int> node_of_id;
   for (int i = 0; i < s.num_nodes(); ++i) node_of_id.emplace(s.scans[i].id, i);
@@ -146,12 +150,14 @@ std::string list_of_links(const Solver& s, const std::vector<int>& edges) {
 }
 
 void promote(Solver& s, int e, const std::string& why) {
-  s.judge(e, Verdict::accepted, fmt::format("{} (by itself ambiguous: {})", why, s.link_of(e).link.result.reason));
+  s.judge(e, Verdict::accepted,
+          fmt::format("{} (by itself {}: {})", why, to_string(s.link_of(e).measured), s.link_of(e).link.result.reason));
 }
 
 void let_links_judge_each_other(Solver& s) {
   Consensus consensus = find_consensus(s.num_nodes(), s.measurements, s.options);
   s.tree = std::move(consensus.tree);
+  s.solid = consensus.solid;
   for (const LoopRejection& r : consensus.rejections) {
     const std::string loop = loop_text(s, r.error.loop);
     const std::string error = error_text(r.error.rotation_rad, r.error.translation_m);
@@ -251,7 +257,9 @@ bool promote_confirmed(Solver& s) {
   parts.measurements = subset;
   parts.root_from_node = s.root_from_node;
   parts.part = forest_of(s.num_nodes(), s.measurements, spanning(s)).root;
-  const std::vector<ConfirmedLink> confirmed = confirmed_within_parts(parts, s.options);
+  SolveOptions within = s.options;  // what agrees with poses that stand bends nothing
+  if (!s.distrust.empty()) within.chance_closure = SolveOptions().chance_closure;
+  const std::vector<ConfirmedLink> confirmed = confirmed_within_parts(parts, within);
   for (const ConfirmedLink& c : confirmed) {
     const Measurement& m = subset[c.measurement];
     promote(s, kept[c.measurement], "agrees with the loop " + loop_text(s, nodes_of_path(subset, c.path, m.source)));
@@ -267,7 +275,7 @@ struct TrackRecord {
 
 TrackRecord track_record(const Solver& s, const std::vector<char>& in_loop) {
   // A survey without loops tells nothing: this many links that went as expected are assumed beforehand.
-  constexpr double kPrior = 4;
+  constexpr double kPrior = 4, kUndecidedWrong = 0.5;
   TrackRecord record;
   double expected = 0;
   for (int e = 0; e < static_cast<int>(s.measurements.size()); ++e) {
@@ -275,8 +283,8 @@ TrackRecord track_record(const Solver& s, const std::vector<char>& in_loop) {
     if (!m.accepted || !m.votes || s.doubted[e]) continue;
     const bool refuted = s.verdict(e) == Verdict::rejected;
     if (!refuted && !in_loop[e]) continue;
-    // Of three links that contradict each other and went together, one is wrong.
-    record.wrong += !refuted ? 0.0 : s.undecided[e] ? 1.0 / 3.0 : 1.0;
+    // Of links that contradict each other and went together, some were right.
+    record.wrong += !refuted ? 0.0 : s.undecided[e] ? kUndecidedWrong : 1.0;
     expected += 1.0 / (1.0 + std::exp(m.log_odds));
     ++record.judged;
   }
@@ -306,13 +314,14 @@ std::vector<char> on_loops(const Solver& s, bool guided) {
 bool doubt_bridges(Solver& s) {
   const std::vector<char> in_loop = on_loops(s, false), in_any_loop = on_loops(s, true);
   const TrackRecord record = track_record(s, in_loop);
-  if (record.judged == 0 || record.wrong <= record.expected) return false;
+  if (record.judged < kFewestJudged || record.wrong <= record.expected) return false;
   const double scale = std::log((1 - record.wrong) / record.wrong) - std::log((1 - record.expected) / record.expected);
   bool any = false;
   for (const int e : s.with_verdict(Verdict::accepted)) {
     if (in_loop[e] || s.link_of(e).link.by_hand == ByHand::added) continue;
     if (!s.measurements[e].votes && in_any_loop[e]) continue;  // it joins nothing
-    const double probability = 1.0 / (1.0 + std::exp(-(s.measurements[e].log_odds + scale)));
+    const double probability =
+        std::min(1 - record.wrong, 1.0 / (1.0 + std::exp(-(s.measurements[e].log_odds + scale))));
     if (probability >= 1.0 - s.options.undecided_wrong_probability) continue;
     s.judge(
         e, Verdict::rejected,
@@ -329,6 +338,81 @@ bool doubt_bridges(Solver& s) {
                     "not believed",
                     100 * record.wrong));
   return any;
+}
+
+/// How often refuted links agree with each other: the chance with which a wrong link finds a witness in this survey.
+double closure_of_refuted(const Solver& s) {
+  constexpr double kPrior = 4;
+  const std::vector<int> part = forest_of(s.num_nodes(), s.measurements, spanning(s)).root;
+  std::vector<int> refuted;
+  for (const int e : s.with_verdict(Verdict::rejected))
+    if (s.measurements[e].accepted && s.measurements[e].votes) refuted.push_back(e);
+  const auto step = [&](int from, int to) { return s.root_from_node[to].inverse() * s.root_from_node[from]; };
+  int agreeing = 0;
+  for (const int e : refuted) {
+    const Measurement& m = s.measurements[e];
+    agreeing += std::any_of(refuted.begin(), refuted.end(), [&](int other) {
+      const Measurement& o = s.measurements[other];
+      if (other == e) return false;
+      for (const auto& [near, far] : {std::pair(o.source, o.target), std::pair(o.target, o.source)}) {
+        if (part[near] != part[m.source] || part[far] != part[m.target]) continue;
+        const Transform predicted = step(far, m.target) * walked_from(o, near).b_from_a * step(m.source, near);
+        if (is_tight(disagreement(m.target_from_source.b_from_a, predicted), m)) return true;
+      }
+      return false;
+    });
+  }
+  return (agreeing + kPrior * s.options.chance_closure) / (static_cast<double>(refuted.size()) + kPrior);
+}
+
+/// Where loops refute so many accepted links that the pair stage's word is worth little, nothing is believed on that
+/// word alone: every link becomes ambiguous, as probable as the share that stood, and agreement is worth what it is
+/// worth among the refuted. Links taken out or added by hand stay. True if it came to that.
+bool distrust_all(Solver& s, const PoseGraph& graph, const SolveOptions& options) {
+  const TrackRecord record = track_record(s, on_loops(s, false));
+  if (record.judged < kFewestJudged ||
+      record.wrong < std::max(options.undecided_wrong_probability, 2 * record.expected))
+    return false;
+  const double closure = std::max(options.chance_closure, std::min(0.5, closure_of_refuted(s)));
+  Solver anew = prepared(graph, options);
+  anew.distrust = fmt::format("loops refute {:.0f} % of the accepted links that they can judge", 100 * record.wrong);
+  anew.options.chance_closure = closure;
+  for (int e = 0; e < static_cast<int>(anew.measurements.size()); ++e) {
+    Measurement& m = anew.measurements[e];
+    if (anew.link_of(e).link.by_hand != ByHand::nothing) continue;
+    m.log_odds = std::min(m.log_odds, clipped_log_odds(1 - record.wrong));
+    if (m.accepted) anew.link_of(e).link.result.verdict = Verdict::ambiguous;
+    m.doubted = m.accepted;
+    m.accepted = false;
+  }
+  anew.warnings.push_back(anew.distrust + ": only links that enough others confirm were believed");
+  s.links = std::move(anew.links);
+  s.measurements = std::move(anew.measurements);
+  s.undecided = std::move(anew.undecided);
+  s.doubted = std::move(anew.doubted);
+  s.warnings = std::move(anew.warnings);
+  s.distrust = std::move(anew.distrust);
+  s.options = anew.options;
+  return true;
+}
+
+void solve_links(Solver& s) {
+  let_links_judge_each_other(s);
+  // Ends: every turn moves at least one link from ambiguous to accepted or from accepted to rejected, never back.
+  do {
+    while (!optimise_once(s)) {
+    }
+  } while (promote_confirmed(s) || doubt_bridges(s));
+}
+
+/// Links that the pair stage accepted, and that were not believed again after all were distrusted.
+void reject_unconfirmed(Solver& s) {
+  for (const int e : s.with_verdict(Verdict::ambiguous)) {
+    if (s.link_of(e).measured != Verdict::accepted) continue;
+    s.judge(e, Verdict::rejected,
+            fmt::format("{}, and too few others confirm this one (by itself: {})", s.distrust,
+                        s.link_of(e).link.result.reason));
+  }
 }
 
 LinkError error_at(const Measurement& m, const std::vector<Transform>& root_from_node) {
@@ -551,12 +635,11 @@ std::optional<Transform> predicted_target_from_source(const Solution& solution, 
 
 Solution solve(const PoseGraph& graph, const SolveOptions& options, const Control& control) {
   Solver s = prepared(graph, options);
-  let_links_judge_each_other(s);
-  // Ends: every turn moves at least one link from ambiguous to accepted or from accepted to rejected, never back.
-  do {
-    while (!optimise_once(s)) {
-    }
-  } while (promote_confirmed(s) || doubt_bridges(s));
+  solve_links(s);
+  if (options.promote_ambiguous && !s.solid && distrust_all(s, graph, options)) {
+    solve_links(s);
+    reject_unconfirmed(s);
+  }
   const SpanningForest forest = forest_of(s.num_nodes(), s.measurements, spanning(s));
   const std::map<int, int> anchors = anchors_of(s, forest);
   Solution solution;

@@ -350,7 +350,9 @@ TEST(Solve, HundredScansWithAsManyWrongLinksAreSolvedQuickly) {
     world.wrong(i, (i + 50 + i % 7) % 100, 0.6, Verdict::ambiguous);
   }
   const Solution solution = solve(world.graph, {});
-  EXPECT_EQ(accepted(solution).size(), 300U);
+  // A third of the accepted links is wrong, so none is believed on its word; a few right ones find no second witness.
+  EXPECT_GE(accepted(solution).size(), 290U);
+  EXPECT_LE(accepted(solution).size(), 300U);
   EXPECT_LT(worst_error_m(world, solution), kVoxel);
 }
 

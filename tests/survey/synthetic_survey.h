@@ -64,10 +64,11 @@ struct World {
     return graph.links.back();
   }
   /// A right link with noise of about a tenth of a voxel and its equal at 15 m.
-  Link& right(int source, int target, double probability = 0.98, Verdict verdict = Verdict::accepted) {
+  Link& right(int source, int target, double probability = 0.98, Verdict verdict = Verdict::accepted,
+              double noise_voxels = 0.1) {
     Vector6d d;
-    for (int k = 0; k < 3; ++k) d[k] = 0.1 * kVoxel * rng.normal();
-    for (int k = 3; k < 6; ++k) d[k] = 0.1 * kVoxel / 15.0 * rng.normal();
+    for (int k = 0; k < 3; ++k) d[k] = noise_voxels * kVoxel * rng.normal();
+    for (int k = 3; k < 6; ++k) d[k] = noise_voxels * kVoxel / 15.0 * rng.normal();
     return add(source, target, truth(source, target) * exp_of(d), probability, verdict);
   }
   Link& exact(int source, int target, double probability = 0.98, Verdict verdict = Verdict::accepted) {

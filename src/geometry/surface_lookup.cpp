@@ -1,6 +1,7 @@
 #include "geometry/surface_lookup.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -46,32 +47,41 @@ SurfaceLookup::SurfaceLookup(std::span<const Eigen::Vector3f> points, float cell
   low_ = box.low;
   for (int a = 0; a < 3; ++a) size_[a] = static_cast<std::uint32_t>((box.high[a] - box.low[a]) * inverse_cell_ / 8) + 1;
   blocks_.assign(static_cast<std::size_t>(size_[0]) * size_[1] * size_[2], -1);
-  std::vector<float> sq_distance;
+  std::vector<float> nearest;                  // squared, of each cell
+  std::array<std::vector<float>, 3> sq_along;  // of the cells' centres about a point, along each axis
+  for (auto& of_axis : sq_along) of_axis.resize(2 * static_cast<std::size_t>(reach_cells) + 1);
   const Eigen::Array3i limit(static_cast<int>(size_[0]) * 8, static_cast<int>(size_[1]) * 8,
                              static_cast<int>(size_[2]) * 8);
-  const float reach_m = cell_m * (static_cast<float>(reach_cells) + 0.5f);
+  const float reach_m = cell_m * (static_cast<float>(reach_cells) + 0.5f), sq_reach = reach_m * reach_m;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3f g = (points[i] - low_) * inverse_cell_;
     if (!((g.array() >= 0).all()) || !((g.array() < limit.cast<float>()).all())) continue;
     const Eigen::Array3i c = g.array().floor().cast<int>();
     const Eigen::Array3i from = (c - reach_cells).max(0), to = (c + reach_cells).min(limit - 1);
+    for (int a = 0; a < 3; ++a)
+      for (int k = from[a]; k <= to[a]; ++k) {
+        const float d = points[i][a] - (low_[a] + cell_m * (static_cast<float>(k) + 0.5f));
+        sq_along[a][static_cast<std::size_t>(k - from[a])] = d * d;
+      }
     for (int z = from[2]; z <= to[2]; ++z)
-      for (int y = from[1]; y <= to[1]; ++y)
+      for (int y = from[1]; y <= to[1]; ++y) {
+        const float sq_yz =
+            sq_along[1][static_cast<std::size_t>(y - from[1])] + sq_along[2][static_cast<std::size_t>(z - from[2])];
+        if (sq_yz > sq_reach) continue;
+        std::int32_t* const row = &blocks_[(static_cast<std::size_t>(z >> 3) * size_[1] + (y >> 3)) * size_[0]];
         for (int x = from[0]; x <= to[0]; ++x) {
-          const Eigen::Vector3f centre =
-              low_ + cell_m * (Eigen::Vector3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)) +
-                               Eigen::Vector3f::Constant(0.5f));
-          const float sq = (points[i] - centre).squaredNorm();
-          if (sq > reach_m * reach_m) continue;
-          std::int32_t& block = blocks_[(static_cast<std::size_t>(z >> 3) * size_[1] + (y >> 3)) * size_[0] + (x >> 3)];
+          const float sq_distance = sq_yz + sq_along[0][static_cast<std::size_t>(x - from[0])];
+          if (sq_distance > sq_reach) continue;
+          std::int32_t& block = row[x >> 3];
           if (block < 0) {
             block = static_cast<std::int32_t>(cells_.size() / 512);
             cells_.resize(cells_.size() + 512, -1);
-            sq_distance.resize(cells_.size(), std::numeric_limits<float>::infinity());
+            nearest.resize(cells_.size(), std::numeric_limits<float>::infinity());
           }
           const std::size_t k = static_cast<std::size_t>(block) * 512 + ((z & 7) << 6 | (y & 7) << 3 | (x & 7));
-          if (sq < sq_distance[k]) sq_distance[k] = sq, cells_[k] = static_cast<std::int32_t>(i);
+          if (sq_distance < nearest[k]) nearest[k] = sq_distance, cells_[k] = static_cast<std::int32_t>(i);
         }
+      }
   }
 }
 

@@ -16,11 +16,6 @@ std::vector<std::uint32_t> even_sample(const ScanModel& model, std::size_t max_p
   return sample;
 }
 
-struct Profile {
-  std::vector<float> support;  // per sampled point
-  double contradiction = 0, against = 0;
-};
-
 // Tolerance along the normal in coarse voxels, the same in metres at both levels: flat surfaces meet within a fifth of
 // a voxel (a curved wall sags that much between two points of it), rough ones within their roughness.
 float tolerance_m(const ScanModel& model, std::int32_t point) {
@@ -58,12 +53,14 @@ Profile profile(const ScanModel& from, const ScanModel& to, const Transform& to_
 }
 
 // `share`: of each profile, so that those of one basin sum to one.
-std::vector<float> rarity(const std::vector<Profile>& profiles, const std::vector<float>& share, std::size_t n) {
+std::vector<float> rarity(const std::vector<Hypothesis>& hypotheses, const Profile PoseProfiles::*direction,
+                          const std::vector<float>& share, std::size_t n) {
   std::vector<float> weight(n, 0);
   float total = 0;
-  for (std::size_t k = 0; k < profiles.size(); ++k) {
+  for (std::size_t k = 0; k < hypotheses.size(); ++k) {
     total += share[k];
-    for (std::size_t i = 0; i < n; ++i) weight[i] += share[k] * profiles[k].support[i];
+    const std::vector<float>& support = ((*hypotheses[k].profiles).*direction).support;
+    for (std::size_t i = 0; i < n; ++i) weight[i] += share[k] * support[i];
   }
   for (float& w : weight) w = std::log((total + 1) / (std::max(w, 1.0f))) / std::log(total + 1);
   return weight;
@@ -260,10 +257,14 @@ void keep_distinct(const ScanModel& source, double position_m, std::vector<Hypot
 void weigh(const ScanModel& source, const ScanModel& target, const Weighing& weighing,
            std::vector<Hypothesis>& hypotheses) {
   const auto from = even_sample(source, weighing.max_points), to = even_sample(target, weighing.max_points);
-  std::vector<Profile> forward(hypotheses.size()), backward(hypotheses.size());
   parallel_for_index(hypotheses.size(), 4, [&](std::size_t k) {
-    forward[k] = profile(source, target, hypotheses[k].target_from_source, from);
-    backward[k] = profile(target, source, hypotheses[k].target_from_source.inverse(), to);
+    Hypothesis& h = hypotheses[k];
+    const Transform& t = h.target_from_source;
+    if (h.profiles && h.profiles->source == &source && h.profiles->max_points == weighing.max_points &&
+        h.profiles->target_from_source.matrix() == t.matrix())
+      return;
+    h.profiles = std::make_shared<const PoseProfiles>(PoseProfiles{
+        t, &source, weighing.max_points, profile(source, target, t, from), profile(target, source, t.inverse(), to)});
   });
   std::vector<float> share(hypotheses.size(), 0.0f);
   for (std::size_t k = 0; k < hypotheses.size(); ++k) {
@@ -272,14 +273,15 @@ void weigh(const ScanModel& source, const ScanModel& target, const Weighing& wei
       alike += same_basin(source, h.target_from_source, hypotheses[k].target_from_source);
     share[k] = 1 / alike;
   }
-  const auto weights = [&](const std::vector<Profile>& profiles, std::size_t n) {
-    return weighing.rarity ? rarity(profiles, share, n) : std::vector<float>(n, 1.0f);
+  const auto weights = [&](const Profile PoseProfiles::*direction, std::size_t n) {
+    return weighing.rarity ? rarity(hypotheses, direction, share, n) : std::vector<float>(n, 1.0f);
   };
-  const std::vector<float> from_weight = weights(forward, from.size()), to_weight = weights(backward, to.size());
+  const std::vector<float> from_weight = weights(&PoseProfiles::forward, from.size()),
+                           to_weight = weights(&PoseProfiles::backward, to.size());
   for (std::size_t k = 0; k < hypotheses.size(); ++k) {
     Hypothesis& h = hypotheses[k];
-    h.source = summary(forward[k], from_weight);
-    h.target = summary(backward[k], to_weight);
+    h.source = summary(h.profiles->forward, from_weight);
+    h.target = summary(h.profiles->backward, to_weight);
     h.score = combined_support(h) * (weighing.free_space ? free_space_factor(h) : 1.0);
   }
   std::stable_sort(hypotheses.begin(), hypotheses.end(),

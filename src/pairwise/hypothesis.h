@@ -1,6 +1,7 @@
 // Hypotheses of one pair: polished, weighed against each other, ranked.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "geometry/transform.h"
@@ -17,12 +18,28 @@ struct DirectedEvidence {
   double against = 0;        ///< close to a surface that faces the opposite way
 };
 
+/// What the sampled points of one scan say about a pose, point by point.
+struct Profile {
+  std::vector<float> support;  ///< per sampled point, 0 to 1
+  double contradiction = 0, against = 0;
+};
+
+/// Both directions of one pose. Hypotheses are weighed again whenever their set changes; their points say the same as
+/// long as the pose stays.
+struct PoseProfiles {
+  Transform target_from_source = Transform::Identity();
+  const ScanModel* source = nullptr;  ///< the level that was asked
+  std::size_t max_points = 0;
+  Profile forward, backward;
+};
+
 struct Hypothesis {
   Transform target_from_source = Transform::Identity();
   const char* generator = "";
   DirectedEvidence source, target;
-  double rms_m = 0;  ///< of the polish, point-to-plane
-  double score = 0;  ///< ranking: the larger the better
+  double rms_m = 0;                              ///< of the polish, point-to-plane
+  double score = 0;                              ///< ranking: the larger the better
+  std::shared_ptr<const PoseProfiles> profiles;  ///< of the last weighing
 };
 
 /// A few point-to-plane steps in both directions with a shrinking gate, on up to `max_points` points a direction.

@@ -11,8 +11,8 @@
 
 #include "base/atomic_file.h"
 #include "config/yaml.h"
-#include "io/scan_name.h"
 #include "io/text_number.h"
+#include "pipelines/csv_fields.h"
 
 namespace isthmus::pipelines {
 namespace {
@@ -156,19 +156,6 @@ Result<std::vector<ControlItem>> from_yaml(const std::string& text, const std::s
   return items;
 }
 
-std::vector<std::string> fields_of(std::string_view line) {
-  std::vector<std::string> fields(1);
-  for (const char c : line) {
-    if (c == ',') {
-      fields.emplace_back();
-    } else {
-      fields.back() += c;
-    }
-  }
-  for (std::string& field : fields) field = std::string(io::trimmed(field));
-  return fields;
-}
-
 constexpr std::array<const char*, 9> kColumns = {"name",    "scan",    "local_x", "local_y", "local_z",
                                                  "world_x", "world_y", "world_z", "sigma_m"};
 
@@ -200,14 +187,8 @@ Result<std::vector<ControlItem>> from_csv(const std::string& text, const std::st
   std::vector<ControlItem> items;
   std::vector<std::string> header;
   std::array<std::size_t, 9> column{};
-  int number = 0;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = io::trimmed(std::string_view(text).substr(begin, end - begin));
-    begin = end + 1;
-    const std::string where = fmt::format("{}:{}", file, ++number);
-    if (line.empty() || line.front() == '#') continue;
-    const std::vector<std::string> fields = fields_of(line);
+  for (const auto& [number, fields] : csv_lines(text)) {
+    const std::string where = fmt::format("{}:{}", file, number);
     if (header.empty()) {
       header = fields;
       for (std::size_t k = 0; k < kColumns.size(); ++k) {

@@ -17,6 +17,7 @@
 #include "pipelines/output_folder.h"
 #include "pipelines/planning.h"
 #include "pipelines/run_facts.h"
+#include "pipelines/scan_positions.h"
 #include "pipelines/survey_pipeline.h"
 #include "pipelines/survey_record.h"
 #include "pipelines/survey_warnings.h"
@@ -194,6 +195,10 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
   if (!listing) return tl::unexpected(listing.error());
   const Result<std::vector<ControlItem>> control = control_items(job);
   if (!control) return tl::unexpected(control.error());
+  std::vector<std::string> names;
+  for (const io::ListedScan& scan : listing->scans) names.push_back(scan.scan.name);
+  const Result<ScanPositions> positions = read_positions(job.settings.candidates.positions, names);
+  if (!positions) return tl::unexpected(positions.error());
   for (const std::string& note : listing->notes) events.info(note);
   bool with_view = false;
   if (job.share.is_whole()) {

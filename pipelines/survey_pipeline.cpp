@@ -18,6 +18,7 @@
 #include "pipelines/model_pairs.h"
 #include "pipelines/pair_rounds.h"
 #include "pipelines/pair_stage.h"
+#include "pipelines/scan_positions.h"
 
 namespace isthmus::pipelines {
 namespace {
@@ -216,12 +217,18 @@ class SurveyGraph {
 
   void propose() {
     std::vector<CandidateInput> inputs;
+    const ScanPositions positions = prior_positions();
+    const auto position_of = [&](const std::string& name) -> std::optional<Eigen::Vector3d> {
+      const auto at = positions.by_name.find(name);
+      return at != positions.by_name.end() ? std::optional(at->second) : std::nullopt;
+    };
     for (const ScanOutcome& scan : out_.scans) {
-      if (scan.missing) inputs.push_back({scan.id, scan.ref.name, {}, 0, std::nullopt});  // to look ahead
+      const std::string& name = scan.ref.name;
+      if (scan.missing) inputs.push_back({scan.id, name, {}, 0, position_of(name)});  // to look ahead
       if (!scan.summary || scan.error) continue;
       const ScanSummary& summary = *scan.summary;
       const std::size_t count = summary.dimension == 0 ? 0 : summary.descriptors.size() / summary.dimension;
-      inputs.push_back({scan.id, scan.ref.name, summary.descriptors, count, std::nullopt});
+      inputs.push_back({scan.id, name, summary.descriptors, count, position_of(name)});
     }
     const ModelSources sources = model_sources();
     CandidateGraph graph =
@@ -237,6 +244,19 @@ class SurveyGraph {
     for (ScanOutcome& scan : out_.scans) {
       if (scan.summary) std::vector<float>().swap(scan.summary->descriptors);  // needed no more
     }
+  }
+
+  /// The file was in order when the run began; what has become of it since is only worth a warning.
+  ScanPositions prior_positions() {
+    std::vector<std::string> names;
+    for (const ScanOutcome& scan : out_.scans) names.push_back(scan.ref.name);
+    Result<ScanPositions> positions = read_positions(settings_.candidates.positions, names);
+    if (!positions) {
+      warn(positions.error().text());
+      return {};
+    }
+    for (const std::string& warning : positions->warnings) warn(warning);
+    return std::move(*positions);
   }
 
   void submit(PairOutcome& pair, std::vector<Transform> priors) {

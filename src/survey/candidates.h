@@ -29,6 +29,7 @@ struct CandidateOptions {
   int file_order_neighbours = 0;
   std::vector<std::string> groups;
   bool only_groups = false;
+  std::string positions;
   std::optional<double> max_distance_m;
   bool check_units = true;
 };

@@ -147,6 +147,16 @@ const config::OptionTable<CandidateOptions>& candidate_options_table() {
            "Leave out a scan whose extent says that it is in another unit than the others, such as millimetres among "
            "metres.",
            "its pairs could only be wrong; sizes that differ tenfold are left alone"},
+          {"positions",
+           &O::positions,
+           "",
+           -kInf,
+           kInf,
+           {},
+           "CSV file of approximate positions of the stations, columns scan,x,y,z in metres: near pairs are tried "
+           "first. Scans "
+           "that it does not name are compared by likeness alone.",
+           "a sketch, a phone or a total station knows them; poses are never taken from it"},
           {"max_distance_m",
            &O::max_distance_m,
            "m",

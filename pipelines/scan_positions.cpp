@@ -1,0 +1,77 @@
+#include "pipelines/scan_positions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/atomic_file.h"
+#include "io/text_number.h"
+#include "pipelines/csv_fields.h"
+#include "pipelines/scan_names.h"
+
+namespace isthmus::pipelines {
+namespace {
+
+constexpr std::array<const char*, 4> kColumns = {"scan", "x", "y", "z"};
+constexpr std::size_t kRequired = 3;
+
+using Columns = std::array<std::size_t, kColumns.size()>;
+
+Result<Columns> columns_of(const std::vector<std::string>& header, const std::string& where) {
+  Columns columns{};
+  for (std::size_t k = 0; k < kColumns.size(); ++k) {
+    columns[k] = static_cast<std::size_t>(std::ranges::find(header, kColumns[k]) - header.begin());
+    if (columns[k] < header.size() || k >= kRequired) continue;
+    return fail(fmt::format("there is no column '{}'", kColumns[k]), where,
+                "the first line names the columns: scan,x,y,z");
+  }
+  return columns;
+}
+
+Result<Eigen::Vector3d> position_of(const std::vector<std::string>& fields, const Columns& columns,
+                                    const std::string& where) {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  for (std::size_t k = 1; k < kColumns.size(); ++k) {
+    if (columns[k] >= fields.size()) continue;  // no heights
+    const std::string& text = fields[columns[k]];
+    const auto number = io::whole_number<double>(text);
+    if (!number || !std::isfinite(*number))
+      return fail(fmt::format("'{}' under {} is not a finite number", text, kColumns[k]), where);
+    position[static_cast<Eigen::Index>(k) - 1] = *number;
+  }
+  return position;
+}
+
+}  // namespace
+
+Result<ScanPositions> read_positions(const std::string& file, std::span<const std::string> scans) {
+  ScanPositions positions;
+  if (file.empty()) return positions;
+  const Result<std::string> text = read_file(file);
+  if (!text) return tl::unexpected(text.error());
+  const std::vector<CsvLine> lines = csv_lines(*text);
+  if (lines.empty()) return fail("there are no positions in it", file, "the first line names the columns: scan,x,y,z");
+  const auto place = [&](const CsvLine& line) { return fmt::format("{}:{}", file, line.number); };
+  const Result<Columns> columns = columns_of(lines.front().fields, place(lines.front()));
+  if (!columns) return tl::unexpected(columns.error());
+  for (const CsvLine& line : std::span(lines).subspan(1)) {
+    if (line.fields.size() != lines.front().fields.size()) {
+      return fail(fmt::format("{} fields, the first line has {}", line.fields.size(), lines.front().fields.size()),
+                  place(line));
+    }
+    const Result<Eigen::Vector3d> position = position_of(line.fields, *columns, place(line));
+    if (!position) return tl::unexpected(position.error());
+    const Result<std::size_t> scan = index_of_scan(scans, line.fields[(*columns)[0]]);
+    if (!scan) {
+      positions.warnings.push_back(fmt::format("{}: {}; {}", place(line), scan.error().what, scan.error().hint));
+      continue;
+    }
+    if (!positions.by_name.emplace(scans[*scan], *position).second)
+      return fail(fmt::format("a second position for {}", scans[*scan]), place(line));
+  }
+  return positions;
+}
+
+}  // namespace isthmus::pipelines

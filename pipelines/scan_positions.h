@@ -1,0 +1,25 @@
+// Where the stations stood, as far as somebody knows: near pairs are tried first (docs/stages/candidates.md).
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+
+namespace isthmus::pipelines {
+
+/// Positions in metres, one frame for all.
+struct ScanPositions {
+  std::map<std::string, Eigen::Vector3d> by_name;  ///< of scans, as in scans.csv
+  std::vector<std::string> warnings;               ///< rows that name no scan of the survey
+};
+
+/// From a CSV file with a first line that names its columns: scan, x, y and, if known, z. Other columns may stand
+/// beside them. Scans are named as in scans.csv, or by their file's name with or without its extension. An empty path
+/// is no positions. Errors name line and value.
+Result<ScanPositions> read_positions(const std::string& file, std::span<const std::string> scans);
+
+}  // namespace isthmus::pipelines

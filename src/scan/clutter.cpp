@@ -127,8 +127,9 @@ double clutter_density(const OccupiedVoxels& voxels) {
   std::sort(counts.begin(), counts.end());
   const double median = counts[counts.size() / 2];
   if (median == 0) return 0;
-  // Evenly spread: hardly a block is empty that should not be, and most are as full as the middle one.
-  constexpr double kSpread = 3, kMinAlike = 0.6, kMaxHoles = 0.05;
+  // Evenly spread: hardly a block is empty that should not be, and nearly all are as full as the middle one. Scans with
+  // a tenth and more of clutter have 95 % alike and more; foliage, far ground and cars of clean ones up to 82 %.
+  constexpr double kSpread = 3, kMinAlike = 0.9, kMaxHoles = 0.05;
   std::size_t alike = 0, empty = 0;
   double total = 0;
   for (const std::uint32_t c : counts) {

@@ -9,6 +9,8 @@ packages=(
   libpcl-dev libeigen3-dev libtbb-dev libceres-dev libembree-dev libopenmpi-dev
   libyaml-cpp-dev libcli11-dev libfmt-dev libexpected-dev libxxhash-dev nlohmann-json3-dev libpugixml-dev
   libgtest-dev libbenchmark-dev
+  # the fuzz targets: clang with libFuzzer and the sanitizers
+  clang libclang-rt-14-dev
   # the 3D view of the report, and a browser to test the page in
   chromium
   # plots and the checks of results

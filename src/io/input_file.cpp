@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -67,12 +68,12 @@ Result<std::size_t> InputFile::read_some(std::uint64_t offset, char* out, std::s
 
 Result<std::string_view> InputFile::peek(std::size_t n) {
   if (end_ - begin_ < n) {
-    if (buffer_.empty()) buffer_.resize(kBufferBytes);
+    if (buffer_.empty()) buffer_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kBufferBytes, size_)));
     std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
     buffer_offset_ += begin_;
     end_ -= begin_;
     begin_ = 0;
-    auto got = read_some(buffer_offset_ + end_, buffer_.data() + end_, kBufferBytes - end_);
+    auto got = read_some(buffer_offset_ + end_, buffer_.data() + end_, buffer_.size() - end_);
     if (!got) return tl::unexpected(std::move(got.error()));
     end_ += *got;
   }

@@ -1,4 +1,5 @@
-// A regular file read front to back through one buffer, or at any offset. Memory: the buffer, whatever the file's size.
+// A regular file read front to back through one buffer, or at any offset. Memory: the buffer, which no file's size
+// makes larger than kBufferBytes.
 #pragma once
 
 #include <cstdint>

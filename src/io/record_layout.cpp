@@ -20,6 +20,7 @@ T load(const char* bytes, bool swap_bytes) {
 template <class T, class Put>
 void each_value_of(const RecordField& field, bool swap_bytes, const char* data, std::size_t first, std::size_t count,
                    const Put& put) {
+  if (count == 0) return;  // then there may be no data either
   const char* place = data + field.offset + first * field.step;
   for (std::size_t i = 0; i < count; ++i, place += field.step) {
     put(i, static_cast<double>(load<T>(place, swap_bytes)) * field.scale + field.add);

@@ -1,4 +1,7 @@
 // Damaged files: any bytes give points or an error, soon, without a crash (run under the sanitizers too).
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <fstream>
 
 #include "base/rng.h"
@@ -142,6 +145,65 @@ TEST_F(Damage, E57WithRightChecksumsNeverCrashes) {
       ASSERT_FALSE(HasFailure()) << "damaged for the " << i << "th time";
     }
     EXPECT_GT(read, 300U);
+  }
+}
+
+/// While it lives, the process can have only so much more memory.
+class LittleMemory {
+ public:
+  LittleMemory() {
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they map terabytes at will
+    constexpr rlim_t kMore = 256U << 20;
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    ::getrlimit(RLIMIT_AS, &before_);
+    const rlimit little{pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + kMore, before_.rlim_max};
+    limited_ = ::setrlimit(RLIMIT_AS, &little) == 0;
+#endif
+  }
+  ~LittleMemory() {
+    if (limited_) ::setrlimit(RLIMIT_AS, &before_);
+  }
+  LittleMemory(const LittleMemory&) = delete;
+  LittleMemory& operator=(const LittleMemory&) = delete;
+
+ private:
+  rlimit before_{};
+  bool limited_ = false;
+};
+
+TEST_F(Damage, HeadersThatClaimAQuintillionPointsAreErrorsAndTakeNoMemory) {
+  const std::string many = "1000000000000000000";
+  const std::string xyz = "1 2 3\n4 5 6\n";
+  const std::string floats(24, '\x3F');
+  const auto ply = [&](const std::string& format) {
+    return "ply\nformat " + format + " 1.0\nelement vertex " + many +
+           "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+  };
+  const auto pcd = [&](const std::string& data) {
+    return "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " + many + "\nHEIGHT 1\nPOINTS " +
+           many + "\nDATA " + data + "\n";
+  };
+  HandMadeE57 e57;
+  e57.add_scan(1000000000000000000, doubles_xml(kXyz), data_packet({floats, floats, floats}));
+  const std::string four_gigabytes(4, '\xFF');
+  const std::vector<fs::path> files = {
+      write("ascii.ply", ply("ascii") + xyz),
+      write("little.ply", ply("binary_little_endian") + floats),
+      write("big.ply", ply("binary_big_endian") + floats),
+      write("ascii.pcd", pcd("ascii") + xyz),
+      write("binary.pcd", pcd("binary") + floats),
+      write("compressed.pcd", pcd("binary_compressed") + four_gigabytes + four_gigabytes + floats),
+      write("a.ptx", many + "\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n1 2 3 0.5\n"),
+      write("a.e57", e57.file()),
+  };
+  const LittleMemory little;
+  for (const fs::path& file : files) {
+    const auto scans = scans_of_file(file);
+    if (!scans) continue;
+    EXPECT_FALSE(read_whole(scans->at(0))) << file;
+    EXPECT_FALSE(inspect_scan(scans->at(0))) << file;
+    (void)probe_scan(scans->at(0), 100);
   }
 }
 

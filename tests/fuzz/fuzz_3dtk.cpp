@@ -1,0 +1,7 @@
+// Any bytes as 3DTK scans.
+#include "fuzz/read_scans.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const isthmus::fuzz::BytesAsFile file("scan.3d");
+  return isthmus::fuzz::read_scans(file, {reinterpret_cast<const char*>(data), size});
+}

@@ -52,10 +52,16 @@ class Looking {
     std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> work;
     for (const std::size_t k : open)
       work[std::minmax(block_of.at(pairs_[k].first), block_of.at(pairs_[k].second))].push_back(k);
+    std::vector<std::pair<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>>> units(work.begin(),
+                                                                                                work.end());
+    begin_at_own_part(units);
     std::size_t row_number = 0;
     Block row;  // stays while the other block of the pairs changes
-    for (const auto& [blocks, of_blocks] : work) {
+    for (auto& [blocks, of_blocks] : units) {
       if (stop_) break;
+      const std::size_t num_of_blocks = of_blocks.size();
+      take_from_others(of_blocks);
+      begin_at_own_part(of_blocks);
       if (row_number != blocks.first) row.clear();
       row_number = blocks.first;
       Block column;
@@ -64,7 +70,7 @@ class Looking {
       parallel_for_index(of_blocks.size(), 1, [&](std::size_t k) {
         if (!stop_) look_at(of_blocks[k], row, column);
       });
-      done_ += of_blocks.size();
+      done_ += num_of_blocks;
       events_.advance(look_.progress, done_, pairs_.size());
     }
     return std::move(answers_);
@@ -88,6 +94,24 @@ class Looking {
     }
     done_ = pairs_.size() - open.size();
     return open;
+  }
+
+  /// Moves the share's part of the items to the front; the others follow in turn.
+  template <class Item>
+  void begin_at_own_part(std::vector<Item>& items) const {
+    const Share& share = sources_.share;
+    if (share.count < 2) return;
+    const std::size_t first = items.size() * share.index / share.count;
+    std::rotate(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(first), items.end());
+  }
+
+  /// What other processes made since look_up() needs no scans in memory.
+  void take_from_others(std::vector<std::size_t>& work) {
+    if (sources_.share.count < 2) return;
+    std::erase_if(work, [&](std::size_t k) {
+      answers_[k] = sources_.store.template load<Answer>(key_of(k));
+      return answers_[k].has_value();
+    });
   }
 
   void load(const std::vector<std::size_t>& work, const std::map<int, std::size_t>& block_of, std::size_t block,
@@ -120,6 +144,8 @@ class Looking {
     };
     const LoadedScan *source = find(pairs_[k].first), *target = find(pairs_[k].second);
     if (source == nullptr || target == nullptr) return;
+    if (sources_.share.count > 1) answers_[k] = sources_.store.template load<Answer>(key_of(k));
+    if (answers_[k]) return;
     answers_[k] = look_.make(k, *source->model, *target->model);
     sources_.store.keep(key_of(k), *answers_[k]);
   }

@@ -13,6 +13,7 @@
 #include "pairwise/check_pose.h"
 #include "pipelines/events.h"
 #include "pipelines/scan_products.h"
+#include "pipelines/share.h"
 #include "survey/candidates.h"
 
 namespace isthmus::pipelines {
@@ -21,6 +22,8 @@ struct ModelSources {
   const std::map<int, const ScanPlan*>& plans;  ///< by id
   const store::Store& store;
   std::function<Result<ScanProduct>(int id)> load;
+  /// Every process needs all answers: each begins at a place of its own and takes what others stored meanwhile.
+  Share share = {};
 };
 
 /// The pairs (source, target) that a glance can judge, in the given order; each glance is kept in the store. Pairs

@@ -206,7 +206,8 @@ void look(const Job& job, const std::vector<io::ListedScan>& scans, const store:
     const std::size_t usable = out.num_scans - out.scans_failed;
     out.pairs_to_make = all_pairs ? usable * (usable - 1) / 2 : most_pairs(usable, job.settings.candidates);
   }
-  out.is_complete = out.scans_to_make == 0 && out.pairs_to_make == 0;
+  out.pairs_are_guessed = out.pairs_are_known && survey.guessed;
+  out.is_complete = out.scans_to_make == 0 && out.pairs_to_make == 0 && !survey.guessed;
   std::uint64_t file_bytes = 0;
   for (const int id : plan.unseen) {
     std::error_code error;

@@ -21,9 +21,10 @@ struct Outlook {
   std::size_t scans_to_make = 0;
   std::size_t scans_failed = 0;  ///< cannot be read or are in another unit
   std::size_t pairs_found = 0;
-  std::size_t pairs_to_make = 0;  ///< known ones
-  bool pairs_are_known = false;   ///< else pairs_to_make is an upper bound for the first round
-  bool is_complete = false;       ///< nothing is to be computed, in later rounds neither
+  std::size_t pairs_to_make = 0;   ///< known ones
+  bool pairs_are_known = false;    ///< else pairs_to_make is an upper bound for the first round
+  bool pairs_are_guessed = false;  ///< known by likeness alone: glances that no run has cast yet may choose others
+  bool is_complete = false;        ///< nothing is to be computed, in later rounds neither
   std::vector<OutlookGroup> scans;
   std::vector<OutlookGroup> pairs;
   double seconds = 0;           ///< expected, with the job's threads

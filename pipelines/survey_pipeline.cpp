@@ -95,6 +95,7 @@ class SurveyGraph {
     }
     graph_.wait_for_all();
     out_.peak_bytes_in_flight = gate_.peak_bytes();
+    out_.guessed = looked_for_unmade_;
   }
 
  private:
@@ -332,10 +333,15 @@ class SurveyGraph {
 
   /// A look ahead makes nothing: it knows what the store holds.
   [[nodiscard]] ModelSources model_sources() {
-    return {plan_of_, store_, [this](int id) -> Result<ScanProduct> {
-              if (share_.only_looks()) return tl::unexpected(Error{"not made: this is a look ahead", "", ""});
+    return {plan_of_, store_,
+            [this](int id) -> Result<ScanProduct> {
+              if (share_.only_looks()) {
+                looked_for_unmade_ = true;
+                return tl::unexpected(Error{"not made: this is a look ahead", "", ""});
+              }
               return load_product(id);
-            }};
+            },
+            share_};
   }
 
   /// Solves, asks the scans on both sides of links without a loop, and solves again without those they refute.
@@ -427,10 +433,11 @@ class SurveyGraph {
   ByteGate gate_;
   ProductCache cache_;
   std::map<int, const ScanPlan*> plan_of_;
-  std::size_t scans_done_ = 0;     // written by the serial barrier only
-  std::size_t pairs_done_ = 0;     // likewise
-  std::size_t num_submitted_ = 0;  // pairs of all waves: deals them out to shares
-  std::size_t num_pairs_ = 0;      // written before pairs are submitted
+  std::size_t scans_done_ = 0;                  // written by the serial barrier only
+  std::size_t pairs_done_ = 0;                  // likewise
+  std::atomic<bool> looked_for_unmade_{false};  // by a look ahead: a glance or check that the store does not hold
+  std::size_t num_submitted_ = 0;               // pairs of all waves: deals them out to shares
+  std::size_t num_pairs_ = 0;                   // written before pairs are submitted
   std::unique_ptr<PairRounds> rounds_;
   std::map<std::pair<int, int>, std::size_t> index_of_pair_;  // into out_.pairs; smaller id first
   std::atomic<std::size_t> num_made_again_{0};

@@ -65,6 +65,7 @@ struct SurveyOutcome {
   std::size_t num_made = 0;           ///< products computed in this run
   std::size_t num_found = 0;          ///< products found in the store
   std::size_t num_missing = 0;  ///< scans and pairs of other shares that are not in the store: there is no solution
+  bool guessed = false;         ///< a look ahead went without glances or checks that no run has made yet
   std::size_t peak_bytes_in_flight = 0;
   SurveyPlan plan;  ///< what the looks at the scans found, and where the products lie
 };

@@ -45,6 +45,20 @@ TEST_F(Rerun, with_nothing_changed_computes_nothing) {
   EXPECT_EQ(made(), "0");
 }
 
+TEST_F(Rerun, a_plan_says_when_glances_that_choose_the_pairs_are_not_cast_yet) {
+  make_old_survey(3);
+  ASSERT_EQ(register_with().exit_code, 0);  // every pair: no glances
+  const std::vector<std::string> by_glances = {"--set", "candidates.all_pairs_up_to=2", "--set",
+                                               "candidates.pairs_per_scan=1"};
+  const std::string before = plan(by_glances);
+  EXPECT_TRUE(has(before, "chosen by likeness alone")) << before;
+  EXPECT_FALSE(has(before, "nothing to compute")) << before;
+  ASSERT_EQ(register_with(by_glances).exit_code, 0);
+  const std::string after = plan(by_glances);
+  EXPECT_FALSE(has(after, "chosen by likeness alone")) << after;
+  EXPECT_TRUE(has(after, "nothing to compute")) << after;
+}
+
 TEST_F(Rerun, with_another_pair_setting_reads_no_scan_and_computes_only_pairs) {
   make_old_survey(3);
   const std::vector<std::string> other = {"--set", "pair.max_hypotheses=60"};

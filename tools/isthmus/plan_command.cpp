@@ -44,6 +44,9 @@ struct PlanRun {
     if (outlook.pairs_are_known) {
       fmt::print("pairs: {} found, {} to compute\n", outlook.pairs_found, outlook.pairs_to_make);
       print_groups(outlook.pairs);
+      if (outlook.pairs_are_guessed) {
+        fmt::print("  chosen by likeness alone: the glances that a run casts first may choose others\n");
+      }
     } else {
       fmt::print("pairs: about {} to compute; which ones is known when the scans are described\n",
                  outlook.pairs_to_make);

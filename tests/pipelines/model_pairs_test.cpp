@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "base/temporary_folder.h"
 #include "pairwise/synthetic_product.h"
 
@@ -26,7 +28,9 @@ class ModelPairs : public ::testing::Test {
       plan.id = id;
       plan.regions = store::make_key("regions", "1", std::array<std::string, 1>{std::to_string(id)});
       plan_of_[id] = &plan;
-      for (int target = 0; target < id; ++target) pairs_.emplace_back(id, target);
+      for (int target = 0; target < id; ++target) {
+        if ((id + target) % 6 == 0) pairs_.emplace_back(id, target);  // some of every unit: a glance takes a while
+      }
     }
   }
   std::vector<ScreenedPair> glance(const Share& share, const ScanProduct* product) {
@@ -48,7 +52,7 @@ TEST_F(ModelPairs, each_share_begins_elsewhere) {
   const auto first_block = [&](const Share& share) {
     glance(share, nullptr);
     EXPECT_FALSE(loaded_.empty());
-    return loaded_.empty() ? -1 : *std::min_element(loaded_.begin(), loaded_.begin() + 8) / 8;
+    return loaded_.empty() ? -1 : loaded_.front() / 8;
   };
   EXPECT_EQ(first_block({}), 0);
   EXPECT_EQ(first_block({0, 2}), 0);
@@ -101,8 +105,9 @@ TEST_F(ModelPairs, two_shares_at_the_same_time_share_the_work) {
                         screen_pairs(pairs_, second, {}, never_stop_);
                       }};
   screen_pairs(pairs_, first, events, never_stop_);
-  EXPECT_EQ(of_first.size(), 8U);  // its first unit's, and no other
-  EXPECT_GT(of_second.size(), 8U);
+  EXPECT_FALSE(of_first.empty());
+  for (const int id : of_first) EXPECT_LT(id, 8) << "not of its first unit";
+  EXPECT_EQ(std::set<int>(of_second.begin(), of_second.end()).size(), static_cast<std::size_t>(kScans));
 }
 
 }  // namespace

@@ -11,15 +11,27 @@
 
 namespace isthmus::pipelines {
 
+/// Where the products that make a scan's cloud for the 3D view lie in the store.
+struct ViewKeys {
+  int id = 0;
+  store::Key sampled, intensity;
+
+  template <class F>
+  void fields(F&& f) {
+    f(id), f(sampled), f(intensity);
+  }
+};
+
 struct MeasuredSurvey {
   std::string title;
   PoseGraph graph;                        ///< of the scans that did not fail, with the verdicts of the pair stage
   std::vector<report::ScanRecord> scans;  ///< ascending ids, failed ones too; not judged
   std::vector<std::string> warnings;      ///< of listing, reading and registering
+  std::vector<ViewKeys> view_keys;        ///< ascending ids, of the scans that did not fail
 
   template <class F>
   void fields(F&& f) {
-    f(title), f(graph), f(scans), f(warnings);
+    f(title), f(graph), f(scans), f(warnings), f(view_keys);
   }
 };
 

@@ -207,7 +207,6 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
     with_view = output->reserve(bytes + bytes_of_view(num_scans)).has_value();
     const Result<void> space = with_view ? Result<void>() : output->reserve(bytes);
     if (!space) return tl::unexpected(space.error());
-    if (!with_view) events.info("there is no space for the view of the scans in the report: it will do without");
   }
 
   StoreTroubles troubles(events);
@@ -249,9 +248,11 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
     if (!found) return tl::unexpected(found.error());
     outcome.solution = solve(measured.graph, job.settings.solve, *found);
   }
-  const std::map<int, ViewKeys> keys = view_keys(outcome);
   result.record = record_of(job, measured, std::move(outcome.solution));
-  if (with_view) add_view_clouds(keys, *store, result.record);
+  if (with_view)
+    add_view_clouds(measured.view_keys, *store, events, result.record);
+  else
+    go_without_view(kNoSpaceForView, events, result.record);
   complete_warnings(result.record, events);
   result.end = end_of(result.record);
   run.input = text_of_inputs(job);

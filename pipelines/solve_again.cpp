@@ -14,6 +14,7 @@
 #include "pipelines/output_folder.h"
 #include "pipelines/run_facts.h"
 #include "pipelines/survey_record.h"
+#include "pipelines/view_clouds.h"
 #include "report/write_outputs.h"
 #include "survey/hand_links.h"
 
@@ -199,6 +200,15 @@ Result<JobResult> solve_again(const fs::path& out, const SolveEdits& edits, cons
 
   JobResult result;
   result.record = record_of(job, finished->measured, solve(finished->measured.graph, job.settings.solve, control));
+  const Result<store::Store> store = store::Store::open(store_folder(job), [&](Error trouble) {
+    trouble.hint = "'isthmus register' makes it anew";
+    events.warn(trouble.text());
+  });
+  if (!store) return tl::unexpected(store.error());
+  if (output->reserve(bytes_of_view(result.record.scans.size())))
+    add_view_clouds(finished->measured.view_keys, *store, events, result.record);
+  else
+    go_without_view(kNoSpaceForView, events, result.record);
   complete_warnings(result.record, events);
   result.end = end_of(result.record);
   run.input = text_of_inputs(job);
@@ -207,9 +217,6 @@ Result<JobResult> solve_again(const fs::path& out, const SolveEdits& edits, cons
   run.threads = 1;
   run.more = {{"survey", finished->measured_digest}};
   if (!edits.take_out.empty() || !edits.add.empty()) {
-    const Result<store::Store> store =
-        store::Store::open(store_folder(job), [&](const Error& trouble) { events.warn(trouble.text()); });
-    if (!store) return tl::unexpected(store.error());
     run.more.emplace_back("edited_survey", keep_measured(finished->measured, *store));
   }
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -218,6 +225,7 @@ Result<JobResult> solve_again(const fs::path& out, const SolveEdits& edits, cons
   result.record.run = run;
   std::error_code ignored;
   fs::remove(out / "run.json", ignored);  // the mark of completeness
+  output->give_back();
   if (const Result<void> written = report::write_outputs(result.record, out); !written) {
     return tl::unexpected(written.error());
   }

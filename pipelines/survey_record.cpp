@@ -48,7 +48,10 @@ MeasuredSurvey measured_of(const Job& job, const SurveyOutcome& outcome, const s
   const std::filesystem::path first = std::filesystem::absolute(job.inputs.front()).lexically_normal();
   measured.title = (first.has_filename() ? first : first.parent_path()).filename().string();
   measured.graph = outcome.graph;
-  for (const ScanOutcome& scan : outcome.scans) measured.scans.push_back(record_of_scan(scan, outcome.voxel_m));
+  for (const ScanOutcome& scan : outcome.scans) {
+    measured.scans.push_back(record_of_scan(scan, outcome.voxel_m));
+    if (scan.summary && !scan.error) measured.view_keys.push_back({scan.id, scan.sampled, scan.intensity});
+  }
   measured.warnings = of_listing;
   measured.warnings.insert(measured.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
   return measured;

@@ -73,6 +73,7 @@ struct SurveyRecord {
   std::string settings_yaml;                                  ///< as used
   std::vector<std::pair<std::string, std::string>> versions;  ///< name, version; isthmus first
   std::vector<std::string> warnings;
+  std::string no_view;  ///< why report.html does not show the scans in space; empty if it does
   RunRecord run;
 };
 

@@ -145,7 +145,12 @@ std::string view_data(const SurveyRecord& record) {
 }
 
 std::string view_section(const SurveyRecord& record) {
-  if (!has_view(record)) return {};
+  if (!has_view(record)) {
+    return record.no_view.empty()
+               ? std::string()
+               : "<h2>In space</h2><p class=\"quiet\">The scans are not shown here: " + escaped(record.no_view) +
+                     ".</p>";
+  }
   return "<h2>In space</h2><div class=\"card\" id=\"view\"><div class=\"view-bar\"><label>colour by <select "
          "data-view=\"colour\"><option value=\"station\">station</option><option value=\"height\">height</option>"
          "<option value=\"intensity\">intensity</option><option value=\"error\">error</option></select></label>" +

@@ -7,7 +7,7 @@
 
 namespace isthmus::report {
 
-/// Empty when no placed scan has a cloud, or the build has no view.
+/// Without a cloud of a placed scan: why, or empty where the build has no view.
 std::string view_section(const SurveyRecord& record);
 
 /// The script that makes the section live; belongs behind the page's own. Empty likewise.

@@ -32,6 +32,11 @@ namespace isthmus::store {
 struct Key {
   std::string stage;   ///< a word: "sampled", "features", "pair"
   std::string digest;  ///< 32 hex digits over code version, settings and inputs; see make_key()
+
+  template <class F>
+  void fields(F&& f) {
+    f(stage), f(digest);
+  }
 };
 
 /// The key of what `stage` in its `version` makes of inputs (digests of files, settings or other keys, in order).

@@ -79,6 +79,41 @@ TEST_F(SolveAgain, without_edits_gives_the_same_bytes_and_reads_no_scan) {
   EXPECT_EQ(before, after);
 }
 
+/// What the page's 3D view reads; empty where the page has none.
+std::string view_data_in(const fs::path& out) {
+  const std::string page = text_of_file(out / "report.html"),
+                    begin = "<script type=\"application/json\" id=\"view-data\">";
+  const std::size_t at = page.find(begin);
+  return at == std::string::npos ? std::string() : page.substr(at, page.find("</script>", at) - at);
+}
+
+TEST_F(SolveAgain, report_shows_the_scans_in_space_as_long_as_the_store_holds_them) {
+  const std::string of_register = view_data_in(out_);
+  if (of_register.empty()) GTEST_SKIP() << "this build's report has no view";
+  fs::remove_all(scans_);
+  ASSERT_LE(solve().exit_code, 3);
+  EXPECT_EQ(view_data_in(out_), of_register);
+
+  // The points of two scans are gone, of which one may not be placed; then those of all.
+  std::vector<fs::path> sampled;
+  for (const auto& entry : fs::recursive_directory_iterator(out_ / "store" / "sampled"))
+    if (entry.is_regular_file()) sampled.push_back(entry.path());
+  ASSERT_EQ(sampled.size(), 4U);
+  for (const std::size_t gone : {0U, 1U}) fs::remove(sampled[gone]);
+  Said said = solve();
+  ASSERT_LE(said.exit_code, 3);
+  EXPECT_NE(said.err.find(" scans have no points in the view of report.html"), std::string::npos) << said.err;
+  EXPECT_FALSE(view_data_in(out_).empty());
+  for (const fs::path& file : sampled) fs::remove(file);
+  said = solve();
+  ASSERT_LE(said.exit_code, 3);
+  EXPECT_NE(said.err.find("report.html does not show the scans in space: the store does not hold"), std::string::npos)
+      << said.err;
+  EXPECT_TRUE(view_data_in(out_).empty());
+  EXPECT_NE(text_of_file(out_ / "report.html").find("The scans are not shown here: the store does not hold"),
+            std::string::npos);
+}
+
 TEST_F(SolveAgain, link_is_taken_out_and_added_by_hand_and_the_outputs_say_so) {
   const Accepted link = first_accepted();
   const std::string poses = text_of_file(out_ / "poses.txt");

@@ -20,3 +20,25 @@ find_package(PCL 1.13 REQUIRED COMPONENTS common io features keypoints registrat
 add_library(isthmus_pcl INTERFACE)
 target_include_directories(isthmus_pcl SYSTEM INTERFACE ${PCL_INCLUDE_DIRS})
 target_link_libraries(isthmus_pcl INTERFACE ${PCL_LIBRARIES})
+
+# LASzip has no package in Debian 12; tools/setup.sh builds it. Its headers are C with a few lines of C++.
+set(ISTHMUS_HAS_LASZIP OFF)
+if(ISTHMUS_LAZ)  # AUTO is true
+  find_path(ISTHMUS_LASZIP_INCLUDE_DIR laszip/laszip_api.h)
+  find_library(ISTHMUS_LASZIP_LIBRARY laszip)
+  mark_as_advanced(ISTHMUS_LASZIP_INCLUDE_DIR ISTHMUS_LASZIP_LIBRARY)
+  if(ISTHMUS_LASZIP_INCLUDE_DIR AND ISTHMUS_LASZIP_LIBRARY)
+    set(ISTHMUS_HAS_LASZIP ON)
+    add_library(isthmus_laszip INTERFACE)
+    target_include_directories(isthmus_laszip SYSTEM INTERFACE ${ISTHMUS_LASZIP_INCLUDE_DIR})
+    target_link_libraries(isthmus_laszip INTERFACE ${ISTHMUS_LASZIP_LIBRARY})
+    message(STATUS "LAZ: on, ${ISTHMUS_LASZIP_LIBRARY}")
+  elseif(NOT ISTHMUS_LAZ STREQUAL "AUTO")
+    message(FATAL_ERROR "ISTHMUS_LAZ is ${ISTHMUS_LAZ}, but LASzip is not installed: run tools/setup.sh, or name "
+      "ISTHMUS_LASZIP_INCLUDE_DIR and ISTHMUS_LASZIP_LIBRARY")
+  else()
+    message(STATUS "LAZ: off, LASzip is not installed (tools/setup.sh builds it)")
+  endif()
+else()
+  message(STATUS "LAZ: off")
+endif()

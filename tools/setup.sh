@@ -23,19 +23,60 @@ packages=(
 command -v node >/dev/null || packages+=(nodejs)
 command -v npm >/dev/null || packages+=(npm)
 
+as_root=()
+[ "$(id -u)" -eq 0 ] || as_root=(sudo)
+export DEBIAN_FRONTEND=noninteractive
+
+# Tarballs of LASzip's source by the first later release that has it, into the folder $1: through the mirror that this
+# machine's packages come from, with lists of its own, so that the machine's configuration stays as it is. apt checks
+# the signatures.
+fetch_laszip() {
+  local folder=$1 mirror suite apt
+  mirror=$(apt-get indextargets --format '$(REPO_URI) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' |
+    awk -v release="$(. /etc/os-release && echo "$VERSION_CODENAME")" '$2 == release && $3 == "main" {print $1; exit}')
+  [ -n "$mirror" ] || return 1
+  mkdir -p "$folder/lists/partial" "$folder/parts"
+  apt=(-qq -o "Dir::Etc::sourcelist=$folder/sources.list" -o "Dir::Etc::sourceparts=$folder/parts"
+    -o "Dir::State::lists=$folder/lists" -o APT::Sandbox::User=root -o Acquire::Retries=1)
+  for suite in trixie testing sid; do
+    echo "deb-src $mirror $suite main" >"$folder/sources.list"
+    (cd "$folder" && apt-get "${apt[@]}" update && apt-get "${apt[@]}" source --tar-only laszip) >"$folder/log" 2>&1 &&
+      ls "$folder"/laszip_*.orig.tar.* >/dev/null 2>&1 && return 0
+  done
+  return 1
+}
+
+# LASzip reads and writes LAZ. Debian 12 has no package of it; without it everything else works.
+install_laszip() {
+  local prefix=${ISTHMUS_LASZIP_PREFIX:-/usr/local} work
+  for place in /usr "$prefix"; do
+    [ -e "$place/include/laszip/laszip_api.h" ] && return
+  done
+  echo "setup: building LASzip into $prefix"
+  work=$(mktemp -d)
+  if fetch_laszip "$work" && mkdir "$work/source" && tar -xf "$work"/laszip_*.orig.tar.* -C "$work/source" --strip-components=1 &&
+    cmake -S "$work/source" -B "$work/build" -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX="$prefix" \
+      -DLASZIP_BUILD_STATIC=ON -DCMAKE_POSITION_INDEPENDENT_CODE=ON >"$work/log" 2>&1 &&
+    cmake --build "$work/build" --parallel >"$work/log" 2>&1 &&
+    "${as_root[@]}" cmake --install "$work/build" >"$work/log" 2>&1; then
+    echo "setup: LASzip is installed; configure the build again to have LAZ"
+  else
+    echo "setup: LASzip could not be had, LAZ files will not be read; the reason:"
+    tail -n 3 "$work/log" 2>/dev/null | sed 's/^/setup:   /' || true
+  fi
+  rm -rf "$work"
+}
+
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")
 done
 if [ ${#missing[@]} -eq 0 ]; then
-  echo "setup: everything is installed"
-  exit 0
+  echo "setup: all packages are installed"
+else
+  echo "setup: installing ${missing[*]}"
+  "${as_root[@]}" apt-get update -qq
+  "${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 fi
-
-echo "setup: installing ${missing[*]}"
-as_root=()
-[ "$(id -u)" -eq 0 ] || as_root=(sudo)
-export DEBIAN_FRONTEND=noninteractive
-"${as_root[@]}" apt-get update -qq
-"${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+install_laszip
 echo "setup: done"

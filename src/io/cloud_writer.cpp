@@ -17,19 +17,12 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "binary records are written in this machine's byte order");
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
-constexpr double kLasScale = 1e-4;
-constexpr std::size_t kLasHeaderBytes = 375;  // of version 1.4
 
 template <class T>
 void append(std::string& out, T value) {
   char raw[sizeof(T)];
   std::memcpy(raw, &value, sizeof(T));
   out.append(raw, sizeof(T));
-}
-
-template <class T>
-void put(std::string& out, std::size_t at, T value) {
-  std::memcpy(out.data() + at, &value, sizeof(T));
 }
 
 /// A comment that keeps the header as long as it is with the largest count.
@@ -64,37 +57,13 @@ std::string pcd_header(std::uint64_t count, const CloudShape& shape) {
   return padded("# .PCD v0.7 - Point Cloud Data file format\n", "# ", number, 2, tail);
 }
 
-/// Places of the fields: "LAS specification 1.4 - R15", ASPRS 2019, table 3.
-std::string las_header(std::uint64_t count, const CloudShape& shape, const Eigen::Array3d& low,
-                       const Eigen::Array3d& high) {
-  std::string h(kLasHeaderBytes, '\0');
-  std::memcpy(h.data(), "LASF", 4);
-  constexpr std::uint16_t kWkt = 1 << 4;  // what point formats from 6 on require, also where no system is named
-  put<std::uint16_t>(h, 6, kWkt);
-  put<std::uint8_t>(h, 24, 1);
-  put<std::uint8_t>(h, 25, 4);
-  std::memcpy(h.data() + 26, "MERGE", 5);
-  std::memcpy(h.data() + 58, "isthmus", 7);
-  put<std::uint16_t>(h, 94, kLasHeaderBytes);
-  put<std::uint32_t>(h, 96, kLasHeaderBytes);
-  put<std::uint8_t>(h, 104, shape.colour ? 7 : 6);
-  put<std::uint16_t>(h, 105, shape.colour ? 36 : 30);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto axis = static_cast<Eigen::Index>(k);
-    put<double>(h, 131 + 8 * k, kLasScale);
-    put<double>(h, 155 + 8 * k, shape.middle[axis]);
-    put<double>(h, 179 + 16 * k, count > 0 ? high[axis] : 0.0);
-    put<double>(h, 187 + 16 * k, count > 0 ? low[axis] : 0.0);
-  }
-  put<std::uint64_t>(h, 247, count);
-  put<std::uint64_t>(h, 255, count);  // every point is the first and only return
-  return h;
-}
-
 }  // namespace
 
 CloudWriter::CloudWriter(OutputFile file, std::string name, Kind kind, const CloudShape& shape)
-    : file_(std::move(file)), name_(std::move(name)), kind_(kind), shape_(shape) {
+    : file_(std::make_unique<OutputFile>(std::move(file))), name_(std::move(name)), kind_(kind), shape_(shape) {
+  las_.colour = shape.colour;
+  las_.offset = shape.middle;
+  las_.crs = shape.crs;
   low_.setConstant(std::numeric_limits<double>::infinity());
   high_ = -low_;
 }
@@ -102,6 +71,7 @@ CloudWriter::CloudWriter(OutputFile file, std::string name, Kind kind, const Clo
 std::optional<CloudWriter::Kind> CloudWriter::kind_of(const std::filesystem::path& path) {
   const std::string extension = lower_case(path.extension().string());
   if (extension == ".las") return Kind::las;
+  if (extension == ".laz") return Kind::laz;
   if (extension == ".ply") return Kind::ply;
   if (extension == ".pcd") return Kind::pcd;
   return std::nullopt;
@@ -111,18 +81,33 @@ bool CloudWriter::knows(const std::filesystem::path& path) { return kind_of(path
 
 Result<CloudWriter> CloudWriter::create(const std::filesystem::path& path, const CloudShape& shape) {
   const auto kind = kind_of(path);
-  if (!kind) return fail("clouds are written as .las, .ply or .pcd", path.string());
+  if (!kind) return fail("clouds are written as .las, .laz, .ply or .pcd", path.string());
   auto file = OutputFile::create(path);
   if (!file) return tl::unexpected(std::move(file.error()));
   CloudWriter writer(std::move(*file), path.string(), *kind, shape);
-  writer.buffer_ = writer.header();
+  if (auto begun = writer.begin(); !begun) return tl::unexpected(std::move(begun.error()));
   return writer;
+}
+
+Result<void> CloudWriter::begin() {
+  if (kind_ == Kind::laz) {
+    auto laz = LazStream::create(*file_, las_.format(), las_.record_bytes(), name_);
+    if (!laz) return tl::unexpected(std::move(laz.error()));
+    laz_ = std::move(*laz);
+    las_.laz_record = laz_->record();
+  }
+  buffer_ = header();
+  const std::uint64_t points_begin = buffer_.size();
+  if (!laz_) return {};
+  if (auto flushed = flush(); !flushed) return flushed;
+  return laz_->begin_points(points_begin);
 }
 
 std::string CloudWriter::header() const {
   switch (kind_) {
     case Kind::las:
-      return las_header(count_, shape_, low_, high_);
+    case Kind::laz:
+      return las_.bytes(count_, low_, high_);
     case Kind::ply:
       return ply_header(count_, shape_);
     case Kind::pcd:
@@ -134,30 +119,39 @@ std::string CloudWriter::header() const {
 Result<void> CloudWriter::append_las(const CloudPoint& point) {
   Eigen::Array3d stored;
   for (int k = 0; k < 3; ++k) {
-    const double steps = std::round((point.position[k] - shape_.middle[k]) / kLasScale);
+    const double steps = std::round((point.position[k] - shape_.middle[k]) / kLasScale_m);
     if (!(std::abs(steps) <= std::numeric_limits<std::int32_t>::max()))
       return fail(fmt::format("a point at {:.3f} is too far from {:.3f} for LAS in steps of 0.1 mm", point.position[k],
                               shape_.middle[k]),
                   name_, "export PLY or PCD");
     append(buffer_, static_cast<std::int32_t>(steps));
-    stored[k] = steps * kLasScale + shape_.middle[k];
+    stored[k] = steps * kLasScale_m + shape_.middle[k];
   }
   low_ = low_.min(stored);
   high_ = high_.max(stored);
   append(buffer_, static_cast<std::uint16_t>(std::lround(std::clamp(point.intensity, 0.0f, 65535.0f))));
-  append(buffer_, std::uint8_t{0x11});  // return 1 of 1
-  buffer_.append(3, '\0');              // flags, class, user data
-  append(buffer_, std::int16_t{0});     // angle
-  append(buffer_, point.source);
-  append(buffer_, 0.0);  // time
+  if (las_.format() < 6) {
+    append(buffer_, std::uint8_t{0x09});  // return 1 of 1
+    buffer_.append(3, '\0');              // class, angle, user data
+    append(buffer_, point.source);
+  } else {
+    append(buffer_, std::uint8_t{0x11});  // return 1 of 1
+    buffer_.append(3, '\0');              // flags, class, user data
+    append(buffer_, std::int16_t{0});     // angle
+    append(buffer_, point.source);
+    append(buffer_, 0.0);  // time
+  }
   if (shape_.colour)
     for (const std::uint8_t value : point.colour) append(buffer_, static_cast<std::uint16_t>(257 * value));
-  return {};
+  if (!laz_) return {};
+  auto added = laz_->add(buffer_);
+  buffer_.clear();
+  return added;
 }
 
 Result<void> CloudWriter::add(const CloudPoint& point) {
   ++count_;
-  if (kind_ == Kind::las) {
+  if (kind_ == Kind::las || kind_ == Kind::laz) {
     if (auto done = append_las(point); !done) return done;
   } else {
     for (int k = 0; k < 3; ++k) append(buffer_, point.position[k]);
@@ -172,15 +166,15 @@ Result<void> CloudWriter::add(const CloudPoint& point) {
 }
 
 Result<void> CloudWriter::flush() {
-  auto written = file_.write(buffer_);
+  auto written = file_->write(buffer_);
   buffer_.clear();
   return written;
 }
 
 Result<void> CloudWriter::publish() {
-  if (auto flushed = flush(); !flushed) return flushed;
-  if (auto written = file_.overwrite(0, header()); !written) return written;
-  return file_.publish();
+  if (auto flushed = laz_ ? laz_->end() : flush(); !flushed) return flushed;
+  if (auto written = file_->overwrite(0, header()); !written) return written;
+  return file_->publish();
 }
 
 }  // namespace isthmus::io

@@ -6,6 +6,7 @@
 
 #include "base/rng.h"
 #include "e57_testing.h"
+#include "io/cloud_writer.h"
 #include "io/inspect.h"
 #include "io/scan_directory.h"
 #include "io/scan_writer.h"
@@ -99,6 +100,12 @@ TEST_F(Damage, FilesOfOurOwnNeverCrash) {
     ASSERT_TRUE(write_scan(folder / name, points));
     damage_often(folder / name, 400);
   }
+  const char* const cloud = has_laz() ? "a.laz" : "a.las";
+  auto writer = CloudWriter::create(folder / cloud, {true, true, Eigen::Vector3d::Zero(), {}});
+  ASSERT_TRUE(writer);
+  for (int i = 0; i < 40; ++i) ASSERT_TRUE(writer->add({{rng.uniform(), 2.0, 1.0 * i}, 3.0F, {1, 2, 3}, 4}));
+  ASSERT_TRUE(writer->publish());
+  damage_often(folder / cloud, 400);
   damage_often(write("a.bin", std::string(160, '\x3F')), 50);
   damage_often(write("a.3d", "1 2 3\n4 5 6\n7 8 9\n"), 100);
 }
@@ -209,13 +216,26 @@ TEST_F(Damage, HeadersThatClaimAQuintillionPointsAreErrorsAndTakeNoMemory) {
 
 TEST_F(Damage, FilesOfOtherProgramsNeverCrash) {
   ISTHMUS_SHARED_DATA_OR_SKIP(data);
-  for (const char* name :
-       {"las_pdal/hextest.las", "las_pdal/spec_3.las", "las_pdal/extrabytes.las", "pcd_pcl/octants.pcd",
-        "pcd_pcl/car6.pcd", "pcd_pdal/autzen-utm.pcd", "ptx_pdal/multiple-and-transform.ptx", "pts_pdal/test.pts",
-        "ply_pdal/mesh.ply", "ply_pdal/simple_binary.ply", "ply_trimesh/points_ascii_with_lists.ply",
-        "ply_trimesh/tet.ply", "ply_tinyply/icosahedron.ply", "obj_pdal/box.obj",
-        "e57_libe57format/ColourRepresentation.e57", "e57_pye57/translationWithoutRotation.e57", "text_pdal/quoted.txt",
-        "text_pdal/utm17_3.txt"}) {
+  for (const char* name : {"las_pdal/hextest.las",
+                           "las_pdal/spec_3.las",
+                           "las_pdal/extrabytes.las",
+                           "laz_pdal/simple.laz",
+                           "laz_pdal/simple-laszip-compressor-version-1.2r0.laz",
+                           "pcd_pcl/octants.pcd",
+                           "pcd_pcl/car6.pcd",
+                           "pcd_pdal/autzen-utm.pcd",
+                           "ptx_pdal/multiple-and-transform.ptx",
+                           "pts_pdal/test.pts",
+                           "ply_pdal/mesh.ply",
+                           "ply_pdal/simple_binary.ply",
+                           "ply_trimesh/points_ascii_with_lists.ply",
+                           "ply_trimesh/tet.ply",
+                           "ply_tinyply/icosahedron.ply",
+                           "obj_pdal/box.obj",
+                           "e57_libe57format/ColourRepresentation.e57",
+                           "e57_pye57/translationWithoutRotation.e57",
+                           "text_pdal/quoted.txt",
+                           "text_pdal/utm17_3.txt"}) {
     damage_often(data / "formats" / name, 100);
   }
 }

@@ -52,6 +52,11 @@ void change_guid(pugi::xml_node root, const std::vector<std::optional<Transform>
   if (root.child("guid")) root.child("guid").text().set(e57_guid(digest).c_str());
 }
 
+void set_coordinates(pugi::xml_node root, const std::string& coordinates) {
+  root.remove_child("coordinateMetadata");
+  append_e57_string(root, "coordinateMetadata", coordinates);
+}
+
 /// Sections and images stand behind the XML section, which usually ends the file.
 bool refers_behind_xml(const pugi::xml_document& document, const E57File& file) {
   return !!document.find_node(
@@ -59,7 +64,7 @@ bool refers_behind_xml(const pugi::xml_document& document, const E57File& file) 
 }
 
 Result<std::string> with_poses(const E57File& file, const std::vector<std::optional<Transform>>& poses,
-                               ScansWithoutPose without, pugi::xml_document& document) {
+                               ScansWithoutPose without, const std::string& coordinates, pugi::xml_document& document) {
   if (auto parsed = parse_e57_xml(file.xml, file.pages.name(), true, document); !parsed) {
     return tl::unexpected(std::move(parsed.error()));
   }
@@ -78,18 +83,19 @@ Result<std::string> with_poses(const E57File& file, const std::vector<std::optio
     set_e57_pose(scans[k], *poses[k]);
   }
   change_guid(root, poses);
+  if (!coordinates.empty()) set_coordinates(root, coordinates);
   return e57_xml_text(document, true);
 }
 
 }  // namespace
 
 Result<void> copy_e57_with_poses(const std::filesystem::path& from, const std::filesystem::path& to,
-                                 const std::vector<std::optional<Transform>>& file_from_scan,
-                                 ScansWithoutPose without) {
+                                 const std::vector<std::optional<Transform>>& file_from_scan, ScansWithoutPose without,
+                                 const std::string& coordinates) {
   auto file = open_e57_file(from);
   if (!file) return tl::unexpected(std::move(file.error()));
   pugi::xml_document document;
-  const auto xml = with_poses(*file, file_from_scan, without, document);
+  const auto xml = with_poses(*file, file_from_scan, without, coordinates, document);
   if (!xml) return tl::unexpected(xml.error());
   // An XML section at the end is replaced; elsewhere the old one stays as bytes that nothing refers to.
   const std::uint64_t end =

@@ -174,7 +174,7 @@ E57Writer::E57Writer(E57Writer&&) noexcept = default;
 E57Writer& E57Writer::operator=(E57Writer&&) noexcept = default;
 E57Writer::~E57Writer() = default;
 
-Result<E57Writer> E57Writer::create(const std::filesystem::path& path) {
+Result<E57Writer> E57Writer::create(const std::filesystem::path& path, const std::string& coordinates) {
   auto pages = E57PageWriter::create(path);
   if (!pages) return tl::unexpected(std::move(pages.error()));
   auto state = std::make_unique<State>(std::move(*pages), path.string());
@@ -188,6 +188,7 @@ Result<E57Writer> E57Writer::create(const std::filesystem::path& path) {
   append_e57_integer(root, "versionMajor", 1);
   append_e57_integer(root, "versionMinor", 0);
   append_e57_string(root, "e57LibraryVersion", "isthmus");
+  if (!coordinates.empty()) append_e57_string(root, "coordinateMetadata", coordinates);
   state->data3d = append_e57_node(root, "data3D", "Vector");
   state->data3d.append_attribute("allowHeterogeneousChildren") = 1;
   pugi::xml_node images = append_e57_node(root, "images2D", "Vector");

@@ -20,7 +20,8 @@ struct E57ScanInfo {
 /// Points are streamed; memory: one packet. The bytes depend on what is written alone (no time, no random guid).
 class E57Writer {
  public:
-  static Result<E57Writer> create(const std::filesystem::path& path);
+  /// `coordinates`: the reference system of the file's frame, as its coordinateMetadata says it; empty: none.
+  static Result<E57Writer> create(const std::filesystem::path& path, const std::string& coordinates = {});
   E57Writer(E57Writer&&) noexcept;
   E57Writer& operator=(E57Writer&&) noexcept;
   ~E57Writer();

@@ -28,7 +28,8 @@ Result<void> append_scan(io::E57Writer& writer, const PlacedScan& placed) {
 
 bool is_e57(const fs::path& path) { return io::lower_case(path.extension().string()) == ".e57"; }
 
-Result<void> copy_e57(const fs::path& from, const fs::path& to, const std::vector<PlacedScan>& scans) {
+Result<void> copy_e57(const fs::path& from, const fs::path& to, const std::vector<PlacedScan>& scans,
+                      const std::string& coordinates) {
   const auto all = io::scans_of_file(from);
   if (!all) return tl::unexpected(all.error());
   std::vector<std::optional<Transform>> poses(all->size());
@@ -36,17 +37,17 @@ Result<void> copy_e57(const fs::path& from, const fs::path& to, const std::vecto
     const auto k = static_cast<std::size_t>(placed.scan.index);
     if (k < poses.size()) poses[k] = placed.file_from_scan;
   }
-  return io::copy_e57_with_poses(from, to, poses, io::ScansWithoutPose::left_out);
+  return io::copy_e57_with_poses(from, to, poses, io::ScansWithoutPose::left_out, coordinates);
 }
 
-Result<void> write_one(const fs::path& path, const std::vector<PlacedScan>& scans) {
+Result<void> write_one(const fs::path& path, const std::vector<PlacedScan>& scans, const std::string& coordinates) {
   const auto file_of = [](const PlacedScan& placed) { return placed.scan.path; };
   if (auto good = check_export(path, scans, file_of); !good) return good;
   const fs::path& first = scans.front().scan.path;
   const bool one_file =
       std::all_of(scans.begin(), scans.end(), [&](const PlacedScan& placed) { return placed.scan.path == first; });
-  if (one_file && is_e57(first)) return copy_e57(first, path, scans);
-  auto writer = io::E57Writer::create(path);
+  if (one_file && is_e57(first)) return copy_e57(first, path, scans, coordinates);
+  auto writer = io::E57Writer::create(path, coordinates);
   if (!writer) return tl::unexpected(std::move(writer.error()));
   for (const PlacedScan& placed : scans) {
     if (auto appended = append_scan(*writer, placed); !appended) return appended;
@@ -56,12 +57,13 @@ Result<void> write_one(const fs::path& path, const std::vector<PlacedScan>& scan
 
 }  // namespace
 
-Result<void> export_e57_file(const fs::path& path, const std::vector<PlacedScan>& scans) {
-  return write_one(path, scans);
+Result<void> export_e57_file(const fs::path& path, const std::vector<PlacedScan>& scans,
+                             const std::string& coordinates) {
+  return write_one(path, scans, coordinates);
 }
 
 Result<std::vector<fs::path>> export_e57_folder(const fs::path& folder, const fs::path& base,
-                                                const std::vector<PlacedScan>& scans) {
+                                                const std::vector<PlacedScan>& scans, const std::string& coordinates) {
   std::map<fs::path, std::vector<PlacedScan>> by_file;
   for (const PlacedScan& placed : scans) by_file[placed.scan.path].push_back(placed);
   std::vector<fs::path> written;
@@ -73,7 +75,7 @@ Result<std::vector<fs::path>> export_e57_folder(const fs::path& folder, const fs
     std::error_code error;
     fs::create_directories(path.parent_path(), error);
     if (error) return fail("folder cannot be created: " + error.message(), path.parent_path().string());
-    if (auto done = write_one(path, its_scans); !done) return tl::unexpected(std::move(done.error()));
+    if (auto done = write_one(path, its_scans, coordinates); !done) return tl::unexpected(std::move(done.error()));
     written.push_back(path);
   }
   return written;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "base/error.h"
@@ -17,12 +18,15 @@ struct PlacedScan {
 
 /// All scans into one E57 file: positions as floats (doubles where the scan has a local origin), intensity and colour
 /// if the scan has them. Scans that are all of one E57 file are copied instead, their points bit for bit.
-Result<void> export_e57_file(const std::filesystem::path& path, const std::vector<PlacedScan>& scans);
+/// `coordinates`: the reference system of the poses' frame, for the file to state; empty: none.
+Result<void> export_e57_file(const std::filesystem::path& path, const std::vector<PlacedScan>& scans,
+                             const std::string& coordinates);
 
 /// One E57 file per file of scans, under its place relative to `base`, extension replaced. E57 files are copied, their
 /// points bit for bit, without the scans that are not in `scans`. Returns the files written.
 Result<std::vector<std::filesystem::path>> export_e57_folder(const std::filesystem::path& folder,
                                                              const std::filesystem::path& base,
-                                                             const std::vector<PlacedScan>& scans);
+                                                             const std::vector<PlacedScan>& scans,
+                                                             const std::string& coordinates);
 
 }  // namespace isthmus::pipelines

@@ -13,7 +13,7 @@
 #include "base/atomic_file.h"
 #include "commands.h"
 #include "exit_codes.h"
-#include "io/cloud_writer.h"
+#include "io/crs.h"
 #include "io/scan_directory.h"
 #include "io/wording.h"
 #include "pipelines/merged_export.h"
@@ -49,6 +49,7 @@ struct ExportRun {
   std::string ptx;
   std::string merged;
   std::optional<double> voxel_m;
+  std::string crs;
   std::string scans;
   int component = 0;
 
@@ -127,26 +128,55 @@ struct ExportRun {
     const auto& [base, sourced] = *scans_of_part;
     std::vector<pipelines::PlacedScan> placed;
     for (const pipelines::SourcedScan& scan : sourced) placed.push_back(scan.placed);
-    if (auto done = e57.empty() ? Result<void>() : write_e57(base, placed, terminal); !done) return done;
+    Result<std::optional<io::Crs>> system = reference_system();
+    if (!system) return tl::unexpected(std::move(system.error()));
+    if (*system) warn_of_own_frame(terminal);
+    const std::string coordinates = *system ? (*system)->text : std::string();
+    if (auto done = e57.empty() ? Result<void>() : write_e57(base, placed, coordinates, terminal); !done) return done;
     if (!ptx.empty()) {
       if (auto done = pipelines::export_ptx(ptx, placed); !done) return done;
       terminal.say(fmt::format("{} scans in {}", placed.size(), ptx));
     }
     if (merged.empty()) return {};
-    const Result<std::uint64_t> count = pipelines::export_merged(merged, sourced, voxel_m);
+    const Result<std::uint64_t> count = pipelines::export_merged(merged, sourced, {voxel_m, *system});
     if (!count) return tl::unexpected(count.error());
     terminal.say(fmt::format("{} points of {} scans in {}", *count, placed.size(), merged));
     return {};
   }
 
+  /// As named, or from the file that is named.
+  Result<std::optional<io::Crs>> reference_system() const {
+    if (crs.empty()) return std::optional<io::Crs>();
+    std::error_code error;
+    const bool in_file = fs::is_regular_file(crs, error);
+    const Result<std::string> text = in_file ? read_file(crs) : Result<std::string>(crs);
+    if (!text) return tl::unexpected(text.error());
+    Result<io::Crs> parsed = io::parse_crs(*text);
+    if (parsed) return std::optional<io::Crs>(std::move(*parsed));
+    return fail(parsed.error().what, in_file ? crs : "--crs", parsed.error().hint);
+  }
+
+  /// A reference system said of coordinates that are not in it misleads whoever opens the file.
+  void warn_of_own_frame(Terminal& terminal) const {
+    const Result<std::string> text = read_file(fs::path(out) / "run.json");
+    const auto json = text ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json();
+    if (!json.is_object() || !json.contains("components") || !json["components"].is_array()) return;
+    const auto& all = json["components"];
+    const auto k = static_cast<std::size_t>(component);
+    if (k >= all.size() || !all[k].is_object() || all[k].value("frame", "") == "world") return;
+    terminal.warn(
+        "the coordinates are those of the first scan, not of a map: --crs is written all the same (a survey is "
+        "laid into a map by 'isthmus solve --control')");
+  }
+
   Result<void> write_e57(const fs::path& base, const std::vector<pipelines::PlacedScan>& placed,
-                         Terminal& terminal) const {
+                         const std::string& coordinates, Terminal& terminal) const {
     if (io::lower_case(fs::path(e57).extension().string()) == ".e57") {
-      auto written = pipelines::export_e57_file(e57, placed);
+      auto written = pipelines::export_e57_file(e57, placed, coordinates);
       if (written) terminal.say(fmt::format("{} scans in {}", placed.size(), e57));
       return written;
     }
-    const auto written = pipelines::export_e57_folder(e57, base, placed);
+    const auto written = pipelines::export_e57_folder(e57, base, placed, coordinates);
     if (!written) return tl::unexpected(written.error());
     terminal.say(fmt::format("{} scans in {} files in {}", placed.size(), written->size(), e57));
     return {};
@@ -174,15 +204,23 @@ void add_export(CLI::App& app, int& exit_code) {
       ->type_name("PATH");
   command->add_option("--ptx", run->ptx, "Scans with their poses filled in as one PTX file")->type_name("FILE.ptx");
   CLI::Option* merged =
-      command->add_option("--merged", run->merged, "All scans as one cloud: FILE.las, FILE.ply or FILE.pcd")
+      command
+          ->add_option("--merged", run->merged,
+                       "All scans as one cloud: FILE.las, .laz, .ply or .pcd; as stations of FILE.e57")
           ->type_name("FILE")
           ->check([](const std::string& file) {
-            return io::CloudWriter::knows(file) ? std::string() : file + " ends in none of .las, .ply, .pcd";
+            return pipelines::knows_merged(file) ? std::string()
+                                                 : file + " ends in none of .las, .laz, .ply, .pcd, .e57";
           });
   command->add_option("--voxel", run->voxel_m, "Keep one point of the merged cloud in each cube of this edge, metres")
       ->type_name("METRES")
       ->check(CLI::PositiveNumber)
       ->needs(merged);
+  command
+      ->add_option("--crs", run->crs,
+                   "Coordinate reference system for LAS, LAZ and E57 to state: EPSG:25832, EPSG:25832+7837, WKT, or a "
+                   "file of WKT")
+      ->type_name("SYSTEM");
   CLI::Option* scans =
       command->add_option("--scans", run->scans, "Folder of the scans (default: by OUT/run.json)")->type_name("DIR");
   command->add_option("--component", run->component, "Which component (default: 0, the largest)")
@@ -190,6 +228,8 @@ void add_export(CLI::App& app, int& exit_code) {
       ->check(CLI::NonNegativeNumber);
   command->callback([run, scans, &exit_code] {
     if (run->poses.empty() && !run->wants_scans()) throw CLI::RequiredError("--poses, --e57, --ptx or --merged");
+    if (!run->crs.empty() && run->e57.empty() && run->merged.empty())
+      throw CLI::RequiredError("--crs needs --merged or --e57");
     if (scans->count() > 0 && !run->wants_scans()) throw CLI::RequiredError("--scans needs --e57, --ptx or --merged");
     exit_code = run->run();
   });

@@ -4,6 +4,7 @@
 #include "base/run_program.h"
 #include "base/temporary_folder.h"
 #include "io/e57/e57_writer.h"
+#include "io/las/laz.h"
 #include "io/scan_writer.h"
 
 #include <sstream>
@@ -162,7 +163,9 @@ TEST_F(ExportCommand, PtxHoldsTheScansInTheirOwnFramesAndThePoses) {
 }
 
 TEST_F(ExportCommand, AMergedCloudHasEveryPointWhereItBelongsAndItsSource) {
-  for (const char* name : {"all.ply", "all.pcd", "all.las"}) {
+  std::vector<std::string> names = {"all.ply", "all.pcd", "all.las"};
+  if (io::has_laz()) names.emplace_back("all.laz");
+  for (const std::string& name : names) {
     const fs::path file = folder_ / name;
     const testing::Said said = run({"--merged", file.string()});
     ASSERT_EQ(said.exit_code, 0) << said.err;
@@ -189,6 +192,84 @@ TEST_F(ExportCommand, AMergedCloudHasEveryPointWhereItBelongsAndItsSource) {
     EXPECT_EQ(ply[first + point * kRecord + 28], source);
   const std::string las = testing::text_of_file(folder_ / "all.las");
   EXPECT_EQ(las[375 + 150 * 30 + 20], 3) << "the point source id";
+}
+
+TEST_F(ExportCommand, AMergedE57HasTheStationsWithTheirPoses) {
+  const fs::path file = folder_ / "all.e57";
+  const testing::Said said = run({"--merged", file.string()});
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_NE(said.err.find("300 points of 3 scans"), std::string::npos) << said.err;
+  const auto scans = io::scans_of_file(file);
+  ASSERT_TRUE(scans);
+  ASSERT_EQ(scans->size(), 3U);
+  EXPECT_EQ(points_in(file, 1), points_of(12.0F).points);
+  EXPECT_LT((pose_in(file, 1) * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(5, 7, 7)).norm(), 1e-12);
+  auto reader = io::open_scan({file, 2, {}});
+  EXPECT_TRUE(reader && (*reader)->header().has_intensity);
+
+  // The last scan has its first point where the first scan has one at a voxel of 100 m.
+  ASSERT_EQ(run({"--merged", file.string(), "--voxel", "100"}).exit_code, 0);
+  EXPECT_EQ(points_in(file, 0).size(), 1U);
+  EXPECT_EQ(points_in(file, 0)[0], points_of(10.0F).points[0]);
+}
+
+TEST_F(ExportCommand, TheReferenceSystemIsStatedWhereTheFormatHasAPlaceForIt) {
+  const std::string wkt = "LOCAL_CS[\"site grid\",UNIT[\"metre\",1]]";
+  const auto record_id = [](const std::string& las) {
+    std::uint16_t id = 0;
+    std::memcpy(&id, las.data() + 375 + 18, sizeof id);
+    return id;
+  };
+  const fs::path las = folder_ / "a.las", e57 = folder_ / "a.e57";
+  const auto say_frame = [&](const std::string& component) {
+    std::ofstream(out_ / "run.json") << R"({"run": {"input": ")" << scans_.string() << R"("}, "components": [)"
+                                     << component << "]}";
+  };
+  say_frame("{}");
+  testing::Said said = run({"--merged", las.string(), "--crs", wkt});
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_NE(said.err.find("not of a map"), std::string::npos) << said.err;
+  std::string bytes = testing::text_of_file(las);
+  EXPECT_EQ(bytes[104], 6);
+  EXPECT_EQ(bytes[6] & 16, 16) << "the system is WKT";
+  EXPECT_EQ(bytes[100], 1);
+  EXPECT_EQ(bytes.substr(375 + 2, 16), std::string("LASF_Projection") + '\0');
+  EXPECT_EQ(record_id(bytes), 2112);
+  EXPECT_EQ(bytes.substr(375 + 54, wkt.size() + 1), wkt + '\0');
+  EXPECT_EQ(points_in(las, 0).size(), 300U);
+
+  // Codes go with old point formats: those from 6 on want WKT.
+  say_frame(R"({"frame": "world"})");
+  said = run({"--merged", las.string(), "--crs", "EPSG:25832+7837"});
+  ASSERT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_EQ(said.err.find("not of a map"), std::string::npos) << said.err;
+  bytes = testing::text_of_file(las);
+  EXPECT_EQ(bytes[104], 0);
+  EXPECT_EQ(bytes[6], 0);
+  EXPECT_EQ(record_id(bytes), 34735);
+  std::uint32_t count = 0;
+  std::memcpy(&count, bytes.data() + 107, sizeof count);
+  EXPECT_EQ(count, 300U) << "old formats have a count for old programs";
+  EXPECT_EQ(points_in(las, 0).size(), 300U);
+  EXPECT_EQ(bytes[bytes.size() - 20 + 18], 4) << "the point source id of the last point";
+
+  // E57: whether the scans are written or, all of one E57 file, copied.
+  std::ofstream(folder_ / "grid.prj") << wkt << "\n";
+  fs::remove(folder_ / "a.las");
+  for (const char* option : {"--merged", "--e57"}) {
+    ASSERT_EQ(run({option, e57.string(), "--crs", (folder_ / "grid.prj").string()}).exit_code, 0);
+    EXPECT_NE(testing::text_of_file(e57).find("<![CDATA[" + wkt + "]]></coordinateMetadata>"), std::string::npos);
+  }
+  ASSERT_EQ(run({"--e57", (folder_ / "each").string(), "--crs", "EPSG:25832"}).exit_code, 0);
+  EXPECT_NE(testing::text_of_file(folder_ / "each/many.e57").find("EPSG:25832"), std::string::npos);
+  EXPECT_EQ(points_in(folder_ / "each/many.e57", 1), points_of(12.0F).points);
+
+  EXPECT_EQ(run({"--merged", (folder_ / "a.ply").string(), "--crs", wkt}).exit_code, 1);
+  EXPECT_EQ(run({"--poses", "csv", "--crs", wkt}).exit_code, 2);
+  said = run({"--merged", las.string(), "--crs", "25832"});
+  EXPECT_EQ(said.exit_code, 1);
+  EXPECT_NE(said.err.find("--crs: '25832' names no coordinate reference system"), std::string::npos) << said.err;
+  EXPECT_FALSE(fs::exists(las));
 }
 
 TEST_F(ExportCommand, AVoxelKeepsItsFirstPoint) {

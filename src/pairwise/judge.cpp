@@ -31,8 +31,8 @@ bool slides(const PairEvidence& e) {
 // it. Of 201 right accepted pairs two show as much; loops can still confirm such a pair.
 constexpr double kDoubtfulProbability = 0.95;
 bool doubtful(const PairEvidence& e) {
-  constexpr double kDoubtfulShare = 0.065;
-  return contradicting_share(e) > kDoubtfulShare;
+  constexpr double kDoubtful = 0.018, kDoubtfulShare = 0.065;
+  return e.contradiction > kDoubtful && contradicting_share(e) > kDoubtfulShare;
 }
 
 // Where one direction is not observed at all (one plane, parallel walls, a piece of floor) no share explained tells

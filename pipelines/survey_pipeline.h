@@ -43,7 +43,7 @@ struct PairOutcome {
   bool missing = false;       ///< another share's, and not in the store
   double seconds = 0;         ///< of this run
   PairResult result;          ///< between local frames, before solving
-  std::string refuted;  ///< why the scans around it forbid the accepted link (bridge_checks.h); empty if they do not
+  std::string refuted;        ///< why the scans around it forbid the link (bridge_checks.h); empty if they do not
 
   /// False if it was refuted before.
   bool refute(const std::string& reason) {

@@ -28,7 +28,7 @@ bool slides(const PairEvidence& e) {
 }
 
 // A room laid into the next one of its size and furniture: no rival, 29 % support, and 7 % of what is in sight against
-// it. Of 201 right accepted pairs two show as much; loops can still confirm such a pair.
+// it. Of 262 right accepted pairs two show as much; loops can still confirm such a pair.
 constexpr double kDoubtfulProbability = 0.95;
 bool doubtful(const PairEvidence& e) {
   constexpr double kDoubtful = 0.018, kDoubtfulShare = 0.065;
@@ -60,7 +60,6 @@ double probability_of(const PairEvidence& e) {
   constexpr double kIntercept = -1.99, kLogScore = 1.42, kLogMargin = 4.31, kContradiction = -1.40, kNear = -1.07;
   constexpr double kLeastScore = 1e-3, kLeastRival = 0.02, kVetoedProbability = 0.5, kSlidingProbability = 0.9;
   constexpr double kUnobservedProbability = 0.1;  // of 317 such pairs 4 were right
-
   const double score = std::max(e.score, kLeastScore);
   const double logit = kIntercept + kLogScore * (std::log(score) + 3) +
                        kLogMargin * std::log(score / std::max(e.rival_score, kLeastRival)) +

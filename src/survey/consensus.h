@@ -31,8 +31,8 @@ struct Consensus {
   std::vector<int> tree;                  ///< measurements of the forest, ascending
   std::vector<LoopRejection> rejections;  ///< links that the pair stage accepted, ascending
   std::vector<Promotion> promotions;      ///< ambiguous links of the tree, ascending
-  bool solid =
-      true;  ///< every cut of the forest holds by three or more links that agree, and no rival has half as many
+  /// Every cut of the forest holds by three or more links that agree, and no rival has more than half as many.
+  bool solid = true;
 };
 
 /// Searches the forest with the largest summed votes of agreeing links, ambiguous ones included (exchange of tree

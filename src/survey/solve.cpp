@@ -386,13 +386,7 @@ bool distrust_all(Solver& s, const PoseGraph& graph, const SolveOptions& options
     m.accepted = false;
   }
   anew.warnings.push_back(anew.distrust + ": only links that enough others confirm were believed");
-  s.links = std::move(anew.links);
-  s.measurements = std::move(anew.measurements);
-  s.undecided = std::move(anew.undecided);
-  s.doubted = std::move(anew.doubted);
-  s.warnings = std::move(anew.warnings);
-  s.distrust = std::move(anew.distrust);
-  s.options = anew.options;
+  s = std::move(anew);
   return true;
 }
 

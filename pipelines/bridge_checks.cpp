@@ -9,16 +9,12 @@
 #include <utility>
 
 #include "pairwise/judge.h"
-#include "pipelines/part_joins.h"
 
 namespace isthmus::pipelines {
 namespace {
 
 constexpr std::size_t kWitnesses = 12;    // pairs across a link
-constexpr int kReach = 2;                 // links from an end to a witness
 constexpr double kTellingSupport = 0.05;  // a pair that neither meets nor contradicts says nothing
-
-bool believed(const SolvedLink& l) { return l.link.result.verdict == Verdict::accepted; }
 
 /// Believed on its own word: neither told where to look nor ambiguous until others agreed. Where rooms repeat,
 /// ambiguous links agree with the wrong one.
@@ -106,7 +102,7 @@ std::vector<RefutedLink> refuted_bridge(const Solution& solution, std::span<cons
     auto sides = sides_of(solution, solved);
     if (!sides) continue;
     const std::vector<GuidedPair> across =
-        pairs_across(sides->of_source, sides->of_target, summaries, kReach,
+        pairs_across(sides->of_source, sides->of_target, summaries,
                      [&](int source, int target) { return predicted_target_from_source(solution, source, target); });
     for (const GuidedPair& pair : first_witnesses(across))
       if (known.emplace(pair.source, pair.target).second) pairs.push_back(posed(pair));
@@ -145,9 +141,8 @@ std::vector<RefutedLink> refuted_bridge(const Solution& solution, std::span<cons
   return refuted;
 }
 
-std::vector<RefutedLink> refuted_joins(const Solution& solution, std::span<const OutlinedScan> scans,
+std::vector<RefutedLink> refuted_joins(std::span<const PartJoin> joins, std::span<const OutlinedScan> scans,
                                        const PoseChecker& check) {
-  const std::vector<PartJoin> joins = possible_joins(solution, summaries_of(scans));
   std::vector<PosedPair> pairs;
   std::vector<std::size_t> begin;  // of each join's pairs
   for (const PartJoin& join : joins) {

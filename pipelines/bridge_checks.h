@@ -11,6 +11,7 @@
 
 #include "pipelines/guided_pairs.h"
 #include "pipelines/model_pairs.h"
+#include "pipelines/part_joins.h"
 
 namespace isthmus::pipelines {
 
@@ -34,7 +35,7 @@ std::vector<RefutedLink> refuted_bridge(const Solution& solution, std::span<cons
 /// The same for ambiguous links between two parts, each for itself: laid onto each other as the link says, may the
 /// scans around its ends stand there? What they refute neither joins the parts nor argues against another link that
 /// does.
-std::vector<RefutedLink> refuted_joins(const Solution& solution, std::span<const OutlinedScan> scans,
+std::vector<RefutedLink> refuted_joins(std::span<const PartJoin> joins, std::span<const OutlinedScan> scans,
                                        const PoseChecker& check);
 
 }  // namespace isthmus::pipelines

@@ -10,8 +10,6 @@
 namespace isthmus::pipelines {
 namespace {
 
-constexpr double kLeastPredictedOverlap =
-    0.1;                             // below it hardly a pair is found (docs/method); a failed try costs seconds
 constexpr float kReachCells = 1.5F;  // as overlaps are measured everywhere: within 1.5 cells
 
 /// Share of the source's outline that has an outline point of the target nearby.
@@ -48,10 +46,9 @@ double predicted_overlap(const ScanSummary& source, const ScanSummary& target, c
   const double apart = (target_from_source * source.centre - target.centre).norm();
   if (apart > extent_of(source) + extent_of(target)) return 0;
   const float reach = kReachCells * std::max(source.outline_cell_m, target.outline_cell_m);
-  const PointGrid target_grid(target.outline, reach);
-  const PointGrid source_grid(source.outline, reach);
-  return std::min(covered(source, target_grid, reach, target_from_source),
-                  covered(target, source_grid, reach, target_from_source.inverse()));
+  const double of_source = covered(source, PointGrid(target.outline, reach), reach, target_from_source);
+  if (of_source < kLeastPredictedOverlap) return of_source;
+  return std::min(of_source, covered(target, PointGrid(source.outline, reach), reach, target_from_source.inverse()));
 }
 
 std::vector<GuidedPair> propose_guided_pairs(const Solution& solution, std::span<const OutlinedScan> scans,

@@ -25,8 +25,11 @@ struct OutlinedScan {
   std::string name;  ///< for reasons; the id is used where it is empty
 };
 
+/// Below it hardly a pair is found (docs/method), and what hardly meets says nothing as a witness.
+inline constexpr double kLeastPredictedOverlap = 0.1;
+
 /// Share of the outlines that meet under the pose, the smaller of the two directions; 0 where the scans are out of each
-/// other's reach.
+/// other's reach. Below kLeastPredictedOverlap it may be that of one direction alone.
 double predicted_overlap(const ScanSummary& source, const ScanSummary& target, const Transform& target_from_source);
 
 /// Pairs within one component without an accepted link whose outlines overlap by a tenth or more, at most

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "pipelines/part_joins.h"
-
 namespace isthmus::pipelines {
 namespace {
 
@@ -26,9 +24,10 @@ std::vector<PlannedPair> PairRounds::first() {
   return pairs;
 }
 
-std::vector<PlannedPair> PairRounds::next(const Solution& solution, std::span<const OutlinedScan> scans) {
+std::vector<PlannedPair> PairRounds::next(const Solution& solution, std::span<const OutlinedScan> scans,
+                                          std::span<const PartJoin> joins) {
   std::vector<PlannedPair> pairs = predicted(solution, scans);
-  for (const std::vector<PlannedPair>& more : {supposed(solution, scans), joining(solution)})
+  for (const std::vector<PlannedPair>& more : {supposed(joins), joining(solution)})
     pairs.insert(pairs.end(), more.begin(), more.end());
   return pairs;
 }
@@ -48,9 +47,9 @@ std::vector<PlannedPair> PairRounds::predicted(const Solution& solution, std::sp
   return pairs;
 }
 
-std::vector<PlannedPair> PairRounds::supposed(const Solution& solution, std::span<const OutlinedScan> scans) {
+std::vector<PlannedPair> PairRounds::supposed(std::span<const PartJoin> joins) {
   std::map<Pair, PlannedPair> by_pair;  // several links may suppose a pair: the likeliest counts
-  for (const PartJoin& join : possible_joins(solution, summaries_of(scans)))
+  for (const PartJoin& join : joins)
     for (const GuidedPair& across : join.across) {
       const Pair pair = std::minmax(across.source, across.target);
       if (tried_.contains(pair)) continue;

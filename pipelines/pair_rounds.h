@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pipelines/guided_pairs.h"
+#include "pipelines/part_joins.h"
 #include "survey/candidates.h"
 
 namespace isthmus::pipelines {
@@ -38,13 +39,15 @@ class PairRounds {
   /// components were right, without telling them where, so that they can bear witness. From what is left of the first
   /// budget, and then a share of the second, for every scan outside the largest component its most promising untried
   /// pairs that would join it to another component. Empty when nothing is left to try. `scans` ascending by id.
-  std::vector<PlannedPair> next(const Solution& solution, std::span<const OutlinedScan> scans);
+  /// `joins` between the solution's components.
+  std::vector<PlannedPair> next(const Solution& solution, std::span<const OutlinedScan> scans,
+                                std::span<const PartJoin> joins);
 
  private:
   using Pair = std::pair<int, int>;  // smaller id first
 
   std::vector<PlannedPair> predicted(const Solution& solution, std::span<const OutlinedScan> scans);
-  std::vector<PlannedPair> supposed(const Solution& solution, std::span<const OutlinedScan> scans);
+  std::vector<PlannedPair> supposed(std::span<const PartJoin> joins);
   std::vector<PlannedPair> joining(const Solution& solution);
   [[nodiscard]] std::size_t left_of_second_budget() const;
 

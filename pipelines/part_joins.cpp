@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/parallel.h"
+
 namespace isthmus::pipelines {
 namespace {
 
-constexpr double kLeastPredictedOverlap = 0.1;  // what hardly meets says nothing
-constexpr int kReach = 2;                       // links from an end of a join to the scans around it
-
-bool believed(const SolvedLink& l) { return l.link.result.verdict == Verdict::accepted; }
+constexpr int kReach = 2;  // links from an end to a witness
 
 }  // namespace
+
+bool believed(const SolvedLink& link) { return link.link.result.verdict == Verdict::accepted; }
 
 Summaries summaries_of(std::span<const OutlinedScan> scans) {
   Summaries summaries;
@@ -43,11 +44,11 @@ std::map<int, int> link_distances(const Solution& solution, int from,
 }
 
 std::vector<GuidedPair> pairs_across(const std::map<int, int>& of_source, const std::map<int, int>& of_target,
-                                     const Summaries& summaries, int reach, const Posing& posing) {
+                                     const Summaries& summaries, const Posing& posing) {
   std::vector<GuidedPair> found;
   for (const auto& [a, to_a] : of_source)
     for (const auto& [b, to_b] : of_target) {
-      if (to_a > reach || to_b > reach || (to_a == 0 && to_b == 0)) continue;
+      if (to_a > kReach || to_b > kReach || (to_a == 0 && to_b == 0)) continue;
       const int source = std::max(a, b), target = std::min(a, b);
       const auto posed = posing(source, target);
       if (!posed || !summaries.contains(source) || !summaries.contains(target)) continue;
@@ -61,11 +62,15 @@ std::vector<GuidedPair> pairs_across(const std::map<int, int>& of_source, const 
 std::vector<PartJoin> possible_joins(const Solution& solution, const Summaries& summaries) {
   std::vector<PartJoin> joins;
   for (const SolvedLink& solved : solution.links) {
-    const Link& link = solved.link;
-    const PlacedScan *source = solution.find(link.source), *target = solution.find(link.target);
-    if (link.result.verdict != Verdict::ambiguous || !link.result.target_from_source || source == nullptr ||
-        target == nullptr || source->component == target->component)
+    const PlacedScan *source = solution.find(solved.link.source), *target = solution.find(solved.link.target);
+    if (solved.link.result.verdict != Verdict::ambiguous || !solved.link.result.target_from_source ||
+        source == nullptr || target == nullptr || source->component == target->component)
       continue;
+    joins.push_back({&solved, {}});
+  }
+  parallel_for_index(joins.size(), 1, [&](std::size_t k) {
+    const Link& link = joins[k].link->link;
+    const PlacedScan *source = solution.find(link.source), *target = solution.find(link.target);
     const Transform target_part_from_source_part =
         target->component_from_local * *link.result.target_from_source * source->component_from_local.inverse();
     const auto posing = [&](int a, int b) -> std::optional<Transform> {  // b_from_a
@@ -75,10 +80,9 @@ std::vector<PartJoin> possible_joins(const Solution& solution, const Summaries& 
           from->component == source->component ? target_part_from_source_part : target_part_from_source_part.inverse();
       return orthonormalised(to->component_from_local.inverse() * to_part_from_from_part * from->component_from_local);
     };
-    joins.push_back(
-        {&solved, pairs_across(link_distances(solution, link.source, believed),
-                               link_distances(solution, link.target, believed), summaries, kReach, posing)});
-  }
+    joins[k].across = pairs_across(link_distances(solution, link.source, believed),
+                                   link_distances(solution, link.target, believed), summaries, posing);
+  });
   return joins;
 }
 

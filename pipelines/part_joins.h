@@ -13,6 +13,8 @@ namespace isthmus::pipelines {
 using Summaries = std::map<int, const ScanSummary*>;
 Summaries summaries_of(std::span<const OutlinedScan> scans);
 
+bool believed(const SolvedLink& link);
+
 /// Scans that hang together with `from` over links that `counts` admits, and over how many of them.
 std::map<int, int> link_distances(const Solution& solution, int from,
                                   const std::function<bool(const SolvedLink&)>& counts);
@@ -20,15 +22,15 @@ std::map<int, int> link_distances(const Solution& solution, int from,
 /// Where a scan would stand: target_from_source between local frames; absent where the poses do not say.
 using Posing = std::function<std::optional<Transform>(int source, int target)>;
 
-/// Pairs of scans on the two sides of a link, at most `reach` links from its ends, that would overlap by a tenth or
-/// more, most overlap first; the link's own ends are left out. Source > target.
+/// Pairs of scans on the two sides of a link, at most two links from its ends, that would overlap by a tenth or more,
+/// most overlap first; the link's own ends are left out. Source > target.
 std::vector<GuidedPair> pairs_across(const std::map<int, int>& of_source, const std::map<int, int>& of_target,
-                                     const Summaries& summaries, int reach, const Posing& posing);
+                                     const Summaries& summaries, const Posing& posing);
 
 /// An ambiguous link between two components.
 struct PartJoin {
-  const SolvedLink* link = nullptr;
-  std::vector<GuidedPair> across;  ///< as above, if the link were right
+  const SolvedLink* link = nullptr;  ///< of the solution
+  std::vector<GuidedPair> across;    ///< as above, if the link were right
 };
 
 /// Every ambiguous link between two components. Those that nothing lies around have nothing across.

@@ -326,7 +326,7 @@ class SurveyGraph {
     if (const auto error = contained([&] { solve_and_check(); })) warn(error->text());
     if (!rounds_) return;
     std::vector<PlannedPair> pairs;
-    if (const auto error = contained([&] { pairs = rounds_->next(out_.solution, outlined_scans()); }))
+    if (const auto error = contained([&] { pairs = rounds_->next(out_.solution, outlined_scans(), joins_); }))
       warn(error->text());
     submit_all(pairs);
   }
@@ -349,11 +349,13 @@ class SurveyGraph {
     const ModelSources sources = model_sources();
     const auto check = [&](std::span<const PosedPair> pairs) { return check_poses(pairs, sources, events_, stop_); };
     for (;;) {
+      joins_.clear();  // they point into the solution
       out_.graph = graph_of_results();
       out_.solution = solve(out_.graph, settings_.solve);
       if (stop_) return;
       if (take_out(refuted_bridge(out_.solution, outlined_scans(), check))) continue;
-      if (!take_out(refuted_joins(out_.solution, outlined_scans(), check))) return;
+      joins_ = possible_joins(out_.solution, summaries_of(outlined_scans()));
+      if (!take_out(refuted_joins(joins_, outlined_scans(), check))) return;
     }
   }
 
@@ -439,6 +441,7 @@ class SurveyGraph {
   std::size_t num_submitted_ = 0;               // pairs of all waves: deals them out to shares
   std::size_t num_pairs_ = 0;                   // written before pairs are submitted
   std::unique_ptr<PairRounds> rounds_;
+  std::vector<PartJoin> joins_;                               // of the last solution
   std::map<std::pair<int, int>, std::size_t> index_of_pair_;  // into out_.pairs; smaller id first
   std::atomic<std::size_t> num_made_again_{0};
 

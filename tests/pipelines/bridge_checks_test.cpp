@@ -78,7 +78,7 @@ TEST(JoinChecks, APartLaidWhereItCannotStandRefutesTheLinkThatLaidItThere) {
     num_asked = pairs.size();
     return out;
   };
-  const auto refuted = refuted_joins(parts.solution, parts.scans, check);
+  const auto refuted = refuted_joins(joins_of(parts), parts.scans, check);
   EXPECT_GT(num_asked, 4U);
   ASSERT_EQ(refuted.size(), 1U);
   EXPECT_EQ(refuted[0].source, 5);
@@ -93,7 +93,7 @@ TEST(JoinChecks, ALinkThatFreeSpaceForbidsByItselfIsNotAsked) {
     ADD_FAILURE() << "it has no vote, so there is nothing to refute";
     return {};
   };
-  EXPECT_TRUE(refuted_joins(parts.solution, parts.scans, check).empty());
+  EXPECT_TRUE(refuted_joins(joins_of(parts), parts.scans, check).empty());
 }
 
 TEST(BridgeChecks, FewDoubtfulWitnessesRefuteNothing) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pipelines/guided_pairs.h"
+#include "pipelines/part_joins.h"
 
 namespace isthmus::pipelines {
 
@@ -52,5 +53,9 @@ struct LineOfStations {
     return solution.links.back().link;
   }
 };
+
+inline std::vector<PartJoin> joins_of(const LineOfStations& line) {
+  return possible_joins(line.solution, summaries_of(line.scans));
+}
 
 }  // namespace isthmus::pipelines

@@ -48,9 +48,9 @@ TEST(PairRounds, ScansOutsideTheLargestComponentAskForTheirMostPromisingPairs) {
   rounds.first();
   // 0, 1, 2 hang together, 3 and 4 stand alone: each asks for its best two; 2 - 0 is decided by the poses.
   const Solution solution = placed({0, 0, 0, 1, 2});
-  EXPECT_EQ(pairs_of(rounds.next(solution, {})), (Pairs{{3, 4}, {0, 3}, {0, 4}}));
-  EXPECT_EQ(pairs_of(rounds.next(solution, {})), (Pairs{{1, 3}, {2, 3}}));
-  EXPECT_TRUE(rounds.next(solution, {}).empty());
+  EXPECT_EQ(pairs_of(rounds.next(solution, {}, {})), (Pairs{{3, 4}, {0, 3}, {0, 4}}));
+  EXPECT_EQ(pairs_of(rounds.next(solution, {}, {})), (Pairs{{1, 3}, {2, 3}}));
+  EXPECT_TRUE(rounds.next(solution, {}, {}).empty());
 }
 
 TEST(PairRounds, StopWhenEverythingHangsTogether) {
@@ -58,7 +58,7 @@ TEST(PairRounds, StopWhenEverythingHangsTogether) {
   graph.reserve = {candidate(1, 0, 0.5), candidate(2, 0, 0.4)};
   PairRounds rounds(graph, {}, 3);
   rounds.first();
-  EXPECT_TRUE(rounds.next(placed({0, 0, 0}), {}).empty());
+  EXPECT_TRUE(rounds.next(placed({0, 0, 0}), {}, {}).empty());
 }
 
 TEST(PairRounds, KeepToTheBudgetsOfBothRounds) {
@@ -75,7 +75,7 @@ TEST(PairRounds, KeepToTheBudgetsOfBothRounds) {
   Pairs tried;
   std::size_t num_first = 0;
   std::map<int, int> late;
-  for (auto wave = rounds.next(placed(alone), {}); !wave.empty(); wave = rounds.next(placed(alone), {})) {
+  for (auto wave = rounds.next(placed(alone), {}, {}); !wave.empty(); wave = rounds.next(placed(alone), {}, {})) {
     for (const auto& pair : pairs_of(wave)) EXPECT_TRUE(tried.insert(pair).second) << "tried twice";
     for (const PlannedPair& pair : wave) {
       num_first += pair.second_round ? 0 : 1;
@@ -97,9 +97,9 @@ TEST(PairRounds, TryWhatWouldOverlapIfAnAmbiguousLinkBetweenPartsWereRight) {
     parts.link(s, t, Verdict::accepted);
   parts.split(3);
   PairRounds rounds({}, {}, 6);
-  EXPECT_TRUE(rounds.next(parts.solution, parts.scans).empty());
+  EXPECT_TRUE(rounds.next(parts.solution, parts.scans, joins_of(parts)).empty());
   parts.ambiguous(3, 2, 0.4);
-  const auto wave = rounds.next(parts.solution, parts.scans);
+  const auto wave = rounds.next(parts.solution, parts.scans, joins_of(parts));
   const Pairs pairs = pairs_of(wave);
   EXPECT_TRUE(pairs.contains({1, 4}));
   EXPECT_FALSE(pairs.contains({2, 3})) << "it has had its try";
@@ -108,22 +108,22 @@ TEST(PairRounds, TryWhatWouldOverlapIfAnAmbiguousLinkBetweenPartsWereRight) {
     EXPECT_FALSE(pair.target_from_source) << "a witness is not told what to say";
     EXPECT_TRUE(pair.source >= 3 && pair.target < 3);
   }
-  for (auto more = rounds.next(parts.solution, parts.scans); !more.empty();
-       more = rounds.next(parts.solution, parts.scans))
+  for (auto more = rounds.next(parts.solution, parts.scans, joins_of(parts)); !more.empty();
+       more = rounds.next(parts.solution, parts.scans, joins_of(parts)))
     for (const auto& pair : pairs_of(more)) EXPECT_FALSE(pairs.contains(pair)) << "tried twice";
 }
 
 TEST(PairRounds, LookWhereThePosesPredictOverlapOnceAPair) {
   const LineOfStations line(3);
   PairRounds rounds({}, {}, 3);
-  const auto wave = rounds.next(line.solution, line.scans);
+  const auto wave = rounds.next(line.solution, line.scans, joins_of(line));
   EXPECT_EQ(pairs_of(wave), (Pairs{{0, 1}, {0, 2}, {1, 2}}));
   for (const PlannedPair& pair : wave) {
     ASSERT_TRUE(pair.target_from_source);
     EXPECT_NEAR(pair.target_from_source->translation().x(), 10.0 * (pair.source - pair.target), 1e-9);
     EXPECT_TRUE(pair.second_round);
   }
-  EXPECT_TRUE(rounds.next(line.solution, line.scans).empty());
+  EXPECT_TRUE(rounds.next(line.solution, line.scans, joins_of(line)).empty());
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "io/e57/e57_poses.h"
-#include "io/e57/e57_writer.h"
 #include "io/wording.h"
 #include "pipelines/export_scans.h"
 
@@ -16,13 +15,9 @@ namespace {
 namespace fs = std::filesystem;
 
 Result<void> append_scan(io::E57Writer& writer, const PlacedScan& placed) {
-  auto reader = io::open_scan(placed.scan);
-  if (!reader) return tl::unexpected(std::move(reader.error()));
-  const ScanHeader& header = (*reader)->header();
-  const Eigen::Vector3d origin = header.local_origin_in_scan;
-  auto begun = writer.begin_scan(
-      {placed.scan.name, {}, placed.file_from_scan, !origin.isZero(0.0), header.has_intensity, header.has_colour});
-  if (!begun) return begun;
+  const auto reader = begin_station(writer, placed);
+  if (!reader) return tl::unexpected(reader.error());
+  const Eigen::Vector3d origin = (*reader)->header().local_origin_in_scan;
   return each_chunk(**reader, [&](const PointChunk& chunk) { return writer.add(chunk, origin); });
 }
 
@@ -56,6 +51,17 @@ Result<void> write_one(const fs::path& path, const std::vector<PlacedScan>& scan
 }
 
 }  // namespace
+
+Result<std::unique_ptr<io::ScanReader>> begin_station(io::E57Writer& writer, const PlacedScan& placed) {
+  auto reader = io::open_scan(placed.scan);
+  if (!reader) return reader;
+  const ScanHeader& header = (*reader)->header();
+  const bool is_far = !header.local_origin_in_scan.isZero(0.0);
+  auto begun =
+      writer.begin_scan({placed.scan.name, {}, placed.file_from_scan, is_far, header.has_intensity, header.has_colour});
+  if (!begun) return tl::unexpected(std::move(begun.error()));
+  return reader;
+}
 
 Result<void> export_e57_file(const fs::path& path, const std::vector<PlacedScan>& scans,
                              const std::string& coordinates) {

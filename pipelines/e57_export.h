@@ -2,11 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
 #include "geometry/transform.h"
+#include "io/e57/e57_writer.h"
 #include "io/scan_reader.h"
 
 namespace isthmus::pipelines {
@@ -15,6 +17,9 @@ struct PlacedScan {
   io::ScanRef scan;
   Transform file_from_scan = Transform::Identity();  ///< the pose to be written
 };
+
+/// Begins the scan in the file, with its pose and with doubles where it has a local origin; its points are to be added.
+Result<std::unique_ptr<io::ScanReader>> begin_station(io::E57Writer& writer, const PlacedScan& placed);
 
 /// All scans into one E57 file: positions as floats (doubles where the scan has a local origin), intensity and colour
 /// if the scan has them. Scans that are all of one E57 file are copied instead, their points bit for bit.

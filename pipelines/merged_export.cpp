@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "io/cloud_writer.h"
-#include "io/e57/e57_writer.h"
 #include "io/wording.h"
 #include "pipelines/export_scans.h"
 #include "pipelines/occupied_voxels.h"
@@ -85,14 +84,10 @@ Result<void> append_scan(io::CloudWriter& writer, const SourcedScan& scan, float
 }
 
 Result<std::uint64_t> append_station(io::E57Writer& writer, const PlacedScan& placed, OccupiedVoxels* seen) {
-  auto reader = io::open_scan(placed.scan);
-  if (!reader) return tl::unexpected(std::move(reader.error()));
-  const ScanHeader& header = (*reader)->header();
-  const Eigen::Vector3d origin = header.local_origin_in_scan;
-  auto begun = writer.begin_scan(
-      {placed.scan.name, {}, placed.file_from_scan, !origin.isZero(0.0), header.has_intensity, header.has_colour});
-  if (!begun) return tl::unexpected(std::move(begun.error()));
-  Choice choice(placed, header, seen);
+  const auto reader = begin_station(writer, placed);
+  if (!reader) return tl::unexpected(reader.error());
+  const Eigen::Vector3d origin = (*reader)->header().local_origin_in_scan;
+  Choice choice(placed, (*reader)->header(), seen);
   std::uint64_t count = 0;
   PointChunk kept;
   auto done = each_chunk(**reader, [&](const PointChunk& chunk) -> Result<void> {

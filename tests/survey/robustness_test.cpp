@@ -51,15 +51,15 @@ struct Survey {
 
 /// A scan that wrong links put elsewhere, all to the same place.
 struct Displaced {
-  std::set<int> scans;
-  std::size_t num_right = 0, num_lies = 0;  ///< of the links between them and the others
+  int scan = 0;
+  std::size_t num_right = 0, num_lies = 0;  ///< of the links between it and the others
 
-  [[nodiscard]] bool is_left_by(const Pair& p) const { return scans.contains(p.first) != scans.contains(p.second); }
+  [[nodiscard]] bool is_left_by(const Pair& p) const { return p.first == scan || p.second == scan; }
 };
 
-/// Whether the right links across every displaced set's cut stay in the majority when this one becomes wrong.
-bool may_lie(const std::vector<Displaced>& sets, const Pair& p) {
-  return std::ranges::all_of(sets,
+/// Whether the right links of every displaced scan stay in the majority when this one becomes wrong.
+bool may_lie(const std::vector<Displaced>& displaced, const Pair& p) {
+  return std::ranges::all_of(displaced,
                              [&](const Displaced& d) { return !d.is_left_by(p) || d.num_right > d.num_lies + 1; });
 }
 
@@ -70,32 +70,32 @@ Survey make(Plan plan, Lies lies, std::uint64_t seed) {
   shuffle(pairs, world.rng);
   const std::size_t half = pairs.size() / 2;
   const auto probability = [&] { return world.rng.uniform(0.85, 0.999); };
-  std::vector<Displaced> sets;
+  std::vector<Displaced> displaced;
   const auto lie = [&](const Pair& p, const Transform& target_from_source) {
     world.add(p.second, p.first, target_from_source, probability());
     s.wrong.insert(p);
-    for (Displaced& d : sets) d.num_right -= d.is_left_by(p);
+    for (Displaced& d : displaced) d.num_right -= d.is_left_by(p);
   };
   for (int turn = 0; lies != Lies::random && turn < 60 && s.wrong.size() < half; ++turn) {
     const int scan = std::min(kStations - 1, static_cast<int>(world.rng.uniform() * kStations));
-    Displaced set;
-    set.scans = {scan};
-    for (const Pair& p : pairs) set.num_right += set.is_left_by(p) && !s.wrong.contains(p);
-    sets.push_back(set);
+    Displaced one;
+    one.scan = scan;
+    for (const Pair& p : pairs) one.num_right += one.is_left_by(p) && !s.wrong.contains(p);
+    displaced.push_back(one);
     // It stands elsewhere: its wrong links agree with each other.
     const Transform moved = testing::random_pose(world.rng, 20.0);
-    const auto place = [&](int i) {
-      return set.scans.contains(i) ? moved * world.world_from_local[i] : world.world_from_local[i];
-    };
+    const auto place = [&](int i) { return i == scan ? moved * world.world_from_local[i] : world.world_from_local[i]; };
     for (const Pair& p : pairs) {
-      if (!set.is_left_by(p) || s.wrong.contains(p) || sets.back().num_lies >= 2U) continue;
-      if (s.wrong.size() >= half || sets.back().num_right <= sets.back().num_lies + 2 || !may_lie(sets, p)) continue;
+      if (!one.is_left_by(p) || s.wrong.contains(p) || displaced.back().num_lies >= 2U) continue;
+      if (s.wrong.size() >= half || displaced.back().num_right <= displaced.back().num_lies + 2 ||
+          !may_lie(displaced, p))
+        continue;
       lie(p, place(p.first).inverse() * place(p.second));
-      ++sets.back().num_lies;
+      ++displaced.back().num_lies;
     }
   }
   for (const Pair& p : pairs)
-    if (s.wrong.size() < half && !s.wrong.contains(p) && may_lie(sets, p))
+    if (s.wrong.size() < half && !s.wrong.contains(p) && may_lie(displaced, p))
       lie(p, testing::random_pose(world.rng, 40.0));
   for (const Pair& p : pairs)
     if (!s.wrong.contains(p)) world.right(p.second, p.first, probability(), Verdict::accepted, 0.03);

@@ -6,6 +6,7 @@
 #include "regions/column_votes.h"
 #include "regions/pair_votes.h"
 #include "regions/pose_votes.h"
+#include "regions/stem_votes.h"
 
 namespace isthmus {
 namespace {
@@ -34,6 +35,19 @@ std::vector<Seed> column_votes(const GeneratorContext& c) {
   return seeds;
 }
 
+std::vector<Seed> stem_votes(const GeneratorContext& c) {
+  constexpr std::size_t kMaxAxisPairs = 2;
+  auto axes = common_axes(c.source.features.axes, c.target.features.axes);
+  if (axes.size() > kMaxAxisPairs) axes.resize(kMaxAxisPairs);
+  std::vector<Seed> seeds;
+  for (const auto& [from, to] : axes) {
+    const auto more = vote_seeds_by_stems(c.source, c.target, from, to, {});
+    seeds.insert(seeds.end(), more.begin(), more.end());
+  }
+  std::stable_sort(seeds.begin(), seeds.end(), [](const Seed& a, const Seed& b) { return a.score > b.score; });
+  return seeds;
+}
+
 std::vector<Seed> pair_votes(const GeneratorContext& c) {
   return vote_seeds_by_pairs(c.source, c.target, c.matches, {});
 }
@@ -56,8 +70,11 @@ std::vector<std::pair<Eigen::Vector3f, Eigen::Vector3f>> common_axes(std::span<c
 }
 
 std::span<const Generator> generators() {
-  static const std::array<Generator, 3> table{
-      {{"column_votes", column_votes, true}, {"axis_votes", axis_votes, false}, {"pair_votes", pair_votes, false}}};
+  const auto always = [](const std::vector<Seed>&) { return true; };
+  static const std::array<Generator, 4> table{{{"stem_votes", stem_votes, true, stems_settle},
+                                               {"column_votes", column_votes, true, always},
+                                               {"axis_votes", axis_votes, false},
+                                               {"pair_votes", pair_votes, false}}};
   return table;
 }
 

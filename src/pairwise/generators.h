@@ -22,6 +22,8 @@ struct Generator {
   std::string_view name;
   std::vector<Seed> (*propose)(const GeneratorContext& context);
   bool ranks;  ///< its seeds come with a score over whole scans; the others are scored around their regions
+  /// Of a ranking one: whether these seeds may settle the pair before the generators that follow are asked.
+  bool (*settles)(const std::vector<Seed>& seeds) = nullptr;
 };
 
 /// Pairs of directions (from, to) that may be the same direction of the scene, the most likely first. Where both scans

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "base/digest.h"
 #include "base/parallel.h"
@@ -44,9 +45,10 @@ const config::OptionTable<PairOptions>& pair_options_table() {
            "",
            0,
            0,
-           {"axis_votes", "column_votes", "pair_votes"},
-           "Where hypotheses come from: axis_votes = matches turned about a common axis of the scene; pair_votes = "
-           "pairs of "
+           {"axis_votes", "column_votes", "pair_votes", "stem_votes"},
+           "Where hypotheses come from: stem_votes = where trunks and posts stand; column_votes = ground plans of all "
+           "that "
+           "stands upright; axis_votes = matches turned about a common axis of the scene; pair_votes = pairs of "
            "oriented matches, any orientation.",
            "docs/stages/overlap.md"},
           {"matches_per_keypoint",
@@ -334,6 +336,19 @@ void note_rivals(const ScanModel& source, const std::vector<Hypothesis>& ranked,
   }
 }
 
+// Whether the best pose leaves no need to look further. `ranked` by weigh().
+bool decisive(const ScanModel& source, const std::vector<Hypothesis>& ranked) {
+  constexpr double kMargin = 3,
+                   kScore = 0.12;  // of 570 measured pairs none beyond both was wrong, but for doubtful truths
+  constexpr double kMaxContradiction = 0.03;  // of what is in sight
+  if (ranked.empty() || ranked.front().score < kScore) return false;
+  for (const DirectedEvidence* e : {&ranked.front().source, &ranked.front().target})
+    if (e->contradiction > kMaxContradiction * (e->contradiction + e->support)) return false;
+  PairEvidence evidence;
+  note_rivals(source, ranked, evidence);
+  return ranked.front().score > kMargin * evidence.rival_score;
+}
+
 // Seeds, growth and weighing of one pair, in rounds that share what was found before.
 class PairSearch {
  public:
@@ -341,33 +356,21 @@ class PairSearch {
              std::vector<std::pair<std::string, double>>& counts, PairTrace* trace)
       : source_(source), target_(target), options_(options), watch_(watch), counts_(counts), trace_(trace) {}
 
-  /// Distinct seeds of the generators that rank their own (over whole scans) or of the others, best first.
-  std::vector<Seed> seeds_of(bool ranking) {
-    constexpr std::uint32_t kMatchesKept = 48;  // before the axis test; matches_per_keypoint after it
-    constexpr float kSeedDistanceVoxels = 3, kSeedAngleRad = 0.1f;
-    MatchTable matches;
-    if (!ranking) {
-      matches = match_descriptors(source_.features, target_.features, kMatchesKept);
-      watch_.lap("matching");
-    }
-    std::vector<Seed> seeds;
+  /// The generators that rank their own seeds over whole scans, one after the other, until one settles the pair; then
+  /// those that work on matches.
+  void run(std::vector<Hypothesis>& hypotheses) {
+    std::vector<Seed> waiting;
     for (const Generator& generator : generators()) {
-      const auto& wanted = options_.generators;
-      if (generator.ranks != ranking || std::find(wanted.begin(), wanted.end(), generator.name) == wanted.end())
-        continue;
-      const auto more = generator.propose({source_, target_, matches, options_});
-      seeds.insert(seeds.end(), more.begin(), more.end());
-      watch_.lap(std::string(generator.name));
+      if (!generator.ranks || !wanted(generator)) continue;
+      const std::vector<Seed> seeds = ranked_seeds_of(generator);
+      waiting.insert(waiting.end(), seeds.begin(), seeds.end());
+      if (!generator.settles(seeds)) continue;
+      add(std::exchange(waiting, {}), hypotheses);
+      if (decisive(source_, hypotheses)) return;
     }
-    counts_.emplace_back(ranking ? "ranked_seeds" : "seeds", static_cast<double>(seeds.size()));
-    if (!ranking) score_seeds(source_, target_, {}, seeds);
-    const int most = ranking ? options_.max_ranked_seeds : options_.max_seeds;
-    seeds = best_distinct_seeds(source_, std::move(seeds), kSeedDistanceVoxels * source_.voxel_m, kSeedAngleRad,
-                                static_cast<std::size_t>(most));
-    watch_.lap("seeds");
-    if (trace_)
-      for (const Seed& s : seeds) trace_->seeds.push_back(transform_of(s.target_from_source(source_)));
-    return seeds;
+    const std::vector<Seed> seeds = seeds_of_matches();
+    waiting.insert(waiting.end(), seeds.begin(), seeds.end());
+    add(waiting, hypotheses);
   }
 
   /// Poses that somebody proposes, polished like the others.
@@ -376,25 +379,6 @@ class PairSearch {
     for (std::size_t k = 0; k < priors.size(); ++k) out[k].target_from_source = priors[k], out[k].generator = "prior";
     polish_all(source_, target_, kPolishPoints, kPolishSteps, out);
     return out;
-  }
-
-  /// Grows the seeds, polishes what is new and weighs it against what is there.
-  void add(const std::vector<Seed>& seeds, std::vector<Hypothesis>& hypotheses) {
-    const double voxel = source_.scan.voxel_m;
-    std::vector<Hypothesis> grown = grown_hypotheses(source_, target_, seeds, !options_.leaves_out("growth"));
-    keep_distinct(source_, voxel, grown);
-    if (grown.size() > static_cast<std::size_t>(options_.max_hypotheses))
-      grown.resize(static_cast<std::size_t>(options_.max_hypotheses));
-    if (trace_)
-      for (const Hypothesis& h : grown) trace_->grown.push_back(h.target_from_source);
-    watch_.lap("growth");
-    polish_all(source_, target_, kPolishPoints, kPolishSteps, grown);
-    hypotheses.insert(hypotheses.end(), grown.begin(), grown.end());
-    rank(source_, target_, hypotheses);
-    climb_best(source_, target_, hypotheses);
-    rank(source_, target_, hypotheses);
-    if (trace_) trace_->polished = transforms_of(hypotheses);
-    watch_.lap("weighing");
   }
 
   /// Super4PCS on the overlaps of the best few.
@@ -431,6 +415,63 @@ class PairSearch {
   static constexpr std::size_t kPolishPoints = 1200;
   static constexpr int kPolishSteps = 6;
 
+  [[nodiscard]] bool wanted(const Generator& generator) const {
+    return std::ranges::find(options_.generators, generator.name) != options_.generators.end();
+  }
+
+  // Distinct ones, best first.
+  std::vector<Seed> distinct(std::vector<Seed> seeds, int most) {
+    constexpr float kSeedDistanceVoxels = 3, kSeedAngleRad = 0.1f;
+    seeds = best_distinct_seeds(source_, std::move(seeds), kSeedDistanceVoxels * source_.voxel_m, kSeedAngleRad,
+                                static_cast<std::size_t>(most));
+    if (trace_)
+      for (const Seed& s : seeds) trace_->seeds.push_back(transform_of(s.target_from_source(source_)));
+    watch_.lap("seeds");
+    return seeds;
+  }
+
+  std::vector<Seed> ranked_seeds_of(const Generator& generator) {
+    std::vector<Seed> seeds = generator.propose({source_, target_, {}, options_});
+    watch_.lap(std::string(generator.name));
+    counts_.emplace_back(generator.name, static_cast<double>(seeds.size()));
+    return distinct(std::move(seeds), options_.max_ranked_seeds);
+  }
+
+  std::vector<Seed> seeds_of_matches() {
+    constexpr std::uint32_t kMatchesKept = 48;  // before the axis test; matches_per_keypoint after it
+    const MatchTable matches = match_descriptors(source_.features, target_.features, kMatchesKept);
+    watch_.lap("matching");
+    std::vector<Seed> seeds;
+    for (const Generator& generator : generators()) {
+      if (generator.ranks || !wanted(generator)) continue;
+      const auto more = generator.propose({source_, target_, matches, options_});
+      seeds.insert(seeds.end(), more.begin(), more.end());
+      watch_.lap(std::string(generator.name));
+    }
+    counts_.emplace_back("seeds", static_cast<double>(seeds.size()));
+    score_seeds(source_, target_, {}, seeds);
+    return distinct(std::move(seeds), options_.max_seeds);
+  }
+
+  // Grows the seeds, polishes what is new and weighs it against what is there.
+  void add(const std::vector<Seed>& seeds, std::vector<Hypothesis>& hypotheses) {
+    const double voxel = source_.scan.voxel_m;
+    std::vector<Hypothesis> grown = grown_hypotheses(source_, target_, seeds, !options_.leaves_out("growth"));
+    keep_distinct(source_, voxel, grown);
+    if (grown.size() > static_cast<std::size_t>(options_.max_hypotheses))
+      grown.resize(static_cast<std::size_t>(options_.max_hypotheses));
+    if (trace_)
+      for (const Hypothesis& h : grown) trace_->grown.push_back(h.target_from_source);
+    watch_.lap("growth");
+    polish_all(source_, target_, kPolishPoints, kPolishSteps, grown);
+    hypotheses.insert(hypotheses.end(), grown.begin(), grown.end());
+    rank(source_, target_, hypotheses);
+    climb_best(source_, target_, hypotheses);
+    rank(source_, target_, hypotheses);
+    if (trace_) trace_->polished = transforms_of(hypotheses);
+    watch_.lap("weighing");
+  }
+
   // Weighed, twins dropped, and weighed again: the share that supports a point is among distinct poses.
   void rank(const ScanModel& source, const ScanModel& target, std::vector<Hypothesis>& hypotheses) const {
     const Weighing weighing{static_cast<std::size_t>(options_.score_points), !options_.leaves_out("rarity"),
@@ -448,19 +489,6 @@ class PairSearch {
   std::vector<std::pair<std::string, double>>& counts_;
   PairTrace* trace_;
 };
-
-// Whether the best pose leaves no need to look further. `ranked` by weigh().
-bool decisive(const ScanModel& source, const std::vector<Hypothesis>& ranked) {
-  constexpr double kMargin = 3,
-                   kScore = 0.12;  // of 570 measured pairs none beyond both was wrong, but for doubtful truths
-  constexpr double kMaxContradiction = 0.03;  // of what is in sight
-  if (ranked.empty() || ranked.front().score < kScore) return false;
-  for (const DirectedEvidence* e : {&ranked.front().source, &ranked.front().target})
-    if (e->contradiction > kMaxContradiction * (e->contradiction + e->support)) return false;
-  PairEvidence evidence;
-  note_rivals(source, ranked, evidence);
-  return ranked.front().score > kMargin * evidence.rival_score;
-}
 
 PairResult rejected(PairResult result, std::string reason) {
   result.verdict = Verdict::rejected;
@@ -492,9 +520,7 @@ PairResult register_pair(const ScanProduct& source_product, const ScanProduct& t
 
   PairSearch search(source, target, options, watch, result.counts, trace);
   std::vector<Hypothesis> hypotheses = search.hypotheses_of(priors);
-  // What is found by whole plans first; matching descriptors only when that does not settle the pair.
-  search.add(search.seeds_of(true), hypotheses);
-  if (!decisive(source, hypotheses)) search.add(search.seeds_of(false), hypotheses);
+  search.run(hypotheses);
   result.counts.emplace_back("hypotheses", static_cast<double>(hypotheses.size()));
   if (hypotheses.empty()) return rejected(std::move(result), "no hypothesis: the scans share no matching regions");
   if (!options.leaves_out("super4pcs")) search.add_congruent(pair_seed(source_product, target_product), hypotheses);

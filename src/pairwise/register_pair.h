@@ -27,7 +27,7 @@ struct ScanProduct {
 };
 
 struct PairOptions {
-  std::vector<std::string> generators{"axis_votes", "column_votes", "pair_votes"};
+  std::vector<std::string> generators{"axis_votes", "column_votes", "pair_votes", "stem_votes"};
   int matches_per_keypoint = 15;
   double vote_window_voxels = 16;
   int max_seeds = 300;

@@ -3,15 +3,14 @@
 
 #include <vector>
 
+#include "regions/ground_plan.h"
 #include "regions/seeds.h"
 
 namespace isthmus {
 
 struct ColumnVoteOptions {
-  float cell_voxels = 3;           ///< of the ground plan
+  GroundPlanOptions plan;
   float yaw_step_rad = 0.06f;      ///< 3.4 degrees: half a step is a cell at 100 voxels from the middle
-  int min_height_voxels = 3;       ///< layers that an upright thing fills
-  std::size_t max_columns = 700;   ///< of each scan
   std::size_t max_checked = 1200;  ///< peaks looked at in three dimensions
   std::size_t max_seeds = 120;
 };

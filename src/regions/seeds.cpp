@@ -55,6 +55,32 @@ void score_seeds(const ScanModel& source, const ScanModel& target, const SeedSco
   });
 }
 
+std::vector<Seed> seeds_at_poses(const ScanModel& source, const ScanModel& target, std::span<const Pose3f> poses) {
+  constexpr std::size_t kLookPoints = 600;
+  constexpr float kReachVoxels = 30;
+  const auto stride = static_cast<std::uint32_t>(std::max<std::size_t>(1, source.points.size() / kLookPoints));
+  std::vector<std::uint32_t> sample;
+  for (std::uint32_t i = 0; i < source.points.size(); i += stride) sample.push_back(i);
+  const auto& regions = source.regions.regions;
+  std::vector<Seed> seeds(poses.size());
+  parallel_for_index(poses.size(), 4, [&](std::size_t s) {
+    const PointVerdicts verdicts = judge_points(source, target, poses[s], sample, true);
+    float best = -1;
+    Seed& seed = seeds[s];
+    for (std::uint32_t r = 0; r < regions.size(); ++r) {
+      float here = 0;
+      for (std::size_t i = 0; i < sample.size(); ++i)
+        if (verdicts[i] == PointVerdict::supported)
+          here += std::max(0.0f,
+                           1 - (source.points[sample[i]] - regions[r].centre).norm() / (kReachVoxels * source.voxel_m));
+      if (here > best) best = here, seed.source_region = r;
+    }
+    seed.rotation = poses[s].rotation;
+    seed.centre_in_target = poses[s] * regions[seed.source_region].centre;
+  });
+  return seeds;
+}
+
 std::vector<Seed> best_distinct_seeds(const ScanModel& source, std::vector<Seed> seeds, float position_m,
                                       float angle_rad, std::size_t keep) {
   std::stable_sort(seeds.begin(), seeds.end(), [](const Seed& a, const Seed& b) { return a.score > b.score; });

@@ -33,6 +33,10 @@ struct SeedScoreOptions {
 void score_seeds(const ScanModel& source, const ScanModel& target, const SeedScoreOptions& options,
                  std::span<Seed> seeds);
 
+/// A seed for each pose of whole scans (target_from_source): growth begins in the region with the most support around
+/// it. Votes, score and generator are left to the caller.
+std::vector<Seed> seeds_at_poses(const ScanModel& source, const ScanModel& target, std::span<const Pose3f> poses);
+
 /// Best score first; of seeds that put the middle of the scan within `position_m` of each other and turn it alike
 /// within `angle_rad` only the best stays, with the votes of all. At most `keep`.
 std::vector<Seed> best_distinct_seeds(const ScanModel& source, std::vector<Seed> seeds, float position_m,

@@ -86,6 +86,10 @@ Result<ScanScale> scale_of_probe(const PointChunk& probe, std::optional<std::uin
   // A voxel should gather more than one raw point, or sampling keeps the scanner's pattern: at most this share of the
   // raw points may remain.
   constexpr double kMaxShareKept = 0.55;
+  // Surfaces of N voxels reach over sqrt(N) / 2 to 2 sqrt(N) of them. Foliage fills space: there 15,000 reached over
+  // 37, voxels of more than a metre, in which trunks are lost. Half of that finds them.
+  const double least_across = 0.5 * std::sqrt(static_cast<double>(target_points));
+  constexpr double kShrinking = 1.5;
   std::vector<Eigen::Vector3f> points;
   for (const auto& p : probe.points)
     if (p.allFinite() && !p.isZero()) points.push_back(p);
@@ -108,6 +112,8 @@ Result<ScanScale> scale_of_probe(const PointChunk& probe, std::optional<std::uin
   scale.voxel_m = voxel_for(std::min(static_cast<double>(target_points), 0.3 * probed));
   if (static_cast<double>(target_points) > 0.3 * probed)  // surfaces: the number of voxels goes with the inverse square
     scale.voxel_m *= std::sqrt(0.3 * probed / target_points);
+  const double across = scale.extent_m / scale.voxel_m;
+  if (across < least_across) scale.voxel_m *= std::pow(across / least_across, kShrinking);
   const bool whole = !num_points || static_cast<double>(*num_points) < 1.5 * probed;
   scale.spacing_m = whole ? voxel_for(kMaxShareKept * probed) : 0;
   return scale;

@@ -312,6 +312,27 @@ std::vector<std::uint32_t> fill(SurfacePoints& out, const std::vector<Voxel>& vo
   return kept;
 }
 
+// Twigs and leaves fill voxels that sight lines pass: what blocks nearly half of the lines at the voxel may let them
+// through at half of it. There the station is believed only if from all places around it more is hidden.
+double blocked_finely(const std::vector<Voxel>& fine, double fine_voxel_m, const Eigen::Vector3f& station,
+                      const StationCheck& coarse) {
+  constexpr float kAway = 0.2f;  // of the median range
+  constexpr double kMuchLess = 0.9;
+  SurfacePoints surface;
+  fill(surface, fine, fine_voxel_m);
+  const auto blocked_at = [&](const Eigen::Vector3f& place) {
+    return check_station(surface.points, surface.normals, static_cast<float>(fine_voxel_m), place).blocked;
+  };
+  const double here = blocked_at(station);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const float sign : {1.0f, -1.0f}) {
+      const Eigen::Vector3f away =
+          sign * kAway * static_cast<float>(coarse.median_range_m) * Eigen::Vector3f::Unit(axis);
+      if (here > kMuchLess * blocked_at(station + away)) return coarse.blocked;
+    }
+  return here;
+}
+
 std::uint32_t median_count(const std::vector<Voxel>& voxels) {
   if (voxels.empty()) return 0;
   std::vector<std::uint32_t> counts;
@@ -382,8 +403,11 @@ Result<SampledScan> VoxelSampler::finish() {
   const bool centred =
       s.candidate_station && !s.station_from_file && s.ray_sum.norm() < kCentred * std::sqrt(s.sq_range_sum * num_rays);
   StationCheck check;
-  if (s.candidate_station)
+  if (s.candidate_station) {
     check = check_station(out.points, out.normals, static_cast<float>(s.voxel_m), *s.candidate_station);
+    if (check.blocked >= kMaxBlocked)
+      check.blocked = blocked_finely(s.voxels, s.fine_voxel_m, *s.candidate_station, check);
+  }
   const bool object = check.median_range_m < kObjectRangeM && check.concentration > kObjectConcentration;
   const bool plausible = check.blocked < kMaxBlocked && !object && check.concentration < kMaxConcentration;
   const bool believed = s.candidate_station && (s.options.station == "origin" || (plausible && !centred));

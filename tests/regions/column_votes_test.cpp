@@ -3,26 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include "base/rng.h"
 #include "pairwise/threads.h"
-#include "regions/hall_pair.h"
+#include "regions/posts.h"
 
 namespace isthmus {
 namespace {
 
+using testing::first_right;
 using testing::HallPair;
 using testing::pose_of;
-
-int first_right(const ScanModel& source, const Transform& truth, const std::vector<Seed>& seeds) {
-  const Eigen::Vector3d middle = source.centroid.cast<double>();
-  for (std::size_t k = 0; k < seeds.size(); ++k) {
-    const Transform t = testing::transform_of(seeds[k].target_from_source(source));
-    if (displacement_m(t, truth, middle) < 5 * static_cast<double>(source.voxel_m) &&
-        rotation_angle_rad(t.linear().transpose() * truth.linear()) < 0.1)
-      return static_cast<int>(k) + 1;
-  }
-  return 0;
-}
 
 TEST(ColumnVotes, RankTheTruthFirstInAHallUnderAnyHeading) {
   for (const double yaw : {0.0, 1.3, -2.9}) {
@@ -47,25 +36,8 @@ TEST(ColumnVotes, TheAxisMayPointAnywhereAndUpsideDownIsWrong) {
   EXPECT_EQ(first_right(pair.source, pair.data.target_from_source, over), 0);
 }
 
-// Square posts in a plain: every post looks like every other, only where they stand tells.
-testing::Scene posts(std::uint64_t seed) {
-  testing::Scene scene;
-  scene.add_rectangle({-60, -60, 0}, {120, 0, 0}, {0, 120, 0});
-  Rng rng(seed);
-  for (int k = 0; k < 90; ++k) {
-    const Eigen::Vector3d p(rng.uniform(-40, 40), rng.uniform(-40, 40), 0);
-    const double a = rng.uniform(0, 6.28), half = 0.4;
-    const Eigen::Vector3d u(half * std::cos(a), half * std::sin(a), 0), v(-u.y(), u.x(), 0), up(0, 0, 6);
-    scene.add_rectangle(p + u - v, 2 * v, up);
-    scene.add_rectangle(p - u - v, 2 * v, up);
-    scene.add_rectangle(p + v - u, 2 * u, up);
-    scene.add_rectangle(p - v - u, 2 * u, up);
-  }
-  return scene;
-}
-
 TEST(ColumnVotes, PostsInAPlainAreFoundByWhereTheyStand) {
-  const testing::Scene plain = posts(5);
+  const testing::Scene plain = testing::posts(5, 0.4);
   const Transform world_from_source = pose_of({-5, 2, 1.7}, {0, 0, 2.2}), world_from_target = pose_of({4, -3, 1.7});
   testing::SamplingSetup setup;
   setup.options.station = "origin";

@@ -71,7 +71,7 @@ Result<Job> job_of(const YAML::Node& node, const fs::path& file) {
     const Result<void> done = config::apply_yaml(node["settings"], stages, name, job.settings.origins);
     if (!done) return tl::unexpected(done.error());
   }
-  for (std::string* path : {&job.settings.run.store, &job.settings.candidates.positions})
+  for (std::string* path : job.settings.paths())
     if (!path->empty()) *path = beside(*path).string();
   return job;
 }
@@ -147,7 +147,7 @@ std::string resolved_job(const Job& job, const fs::path& folder) {
   if (!job.control.empty()) out += fmt::format("control: {}\n", in_quotes(relative_path(job.control, folder)));
   out += "settings:\n";
   Settings settings = job.settings;
-  for (std::string* path : {&settings.run.store, &settings.candidates.positions})
+  for (std::string* path : settings.paths())
     if (!path->empty()) *path = relative_path(*path, folder);
   return out + config::resolved_yaml(settings.stages(), settings.origins, 2);
 }

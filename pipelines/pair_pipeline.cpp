@@ -4,10 +4,12 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <array>
+#include <string>
 
 #include "pipelines/frames.h"
 #include "pipelines/pair_stage.h"
 #include "pipelines/planning.h"
+#include "pipelines/scan_positions.h"
 #include "report/survey_record.h"
 
 namespace isthmus::pipelines {
@@ -15,6 +17,9 @@ namespace {
 
 Result<PairAnswer> register_files(const io::ScanRef& source, const io::ScanRef& target, const Settings& settings,
                                   const store::Store& store, const Events& events) {
+  const std::array<std::string, 2> names = {target.name, source.name};
+  if (const auto stations = read_stations(settings.sampling.stations, names); !stations)
+    return tl::unexpected(stations.error());
   const std::atomic<bool> never_stop{false};
   const SurveyPlan plan = plan_survey({{target, {}}, {source, {}}}, settings, store, events, never_stop);
   PairAnswer answer;

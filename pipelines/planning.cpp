@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "pipelines/code_versions.h"
+#include "pipelines/scan_positions.h"
 #include "store/content_digest.h"
 #include "survey/unit_check.h"
 
@@ -136,6 +137,14 @@ std::size_t bytes_to_make(const io::ScanRef& ref, const ScanScale& scale, double
   return static_cast<std::size_t>(kFixedBytes + kBytesPerVoxel * voxels);
 }
 
+/// The file was in order when the run began; what has become of it since is only worth a warning.
+ScanPositions given_stations(const std::vector<io::ListedScan>& scans, const Settings& settings) {
+  std::vector<std::string> names;
+  for (const io::ListedScan& scan : scans) names.push_back(scan.scan.name);
+  Result<ScanPositions> stations = read_stations(settings.sampling.stations, names);
+  return stations ? std::move(*stations) : ScanPositions{{}, {stations.error().text()}};
+}
+
 }  // namespace
 
 SurveyPlan plan_survey(const std::vector<io::ListedScan>& scans, const Settings& settings, const store::Store& store,
@@ -173,6 +182,8 @@ SurveyPlan plan_survey(const std::vector<io::ListedScan>& scans, const Settings&
     plan.voxel_m = automatic_voxel_m(scales);
   }
   const SettingsDigests digests = digests_of(settings);
+  ScanPositions stations = given_stations(scans, settings);
+  plan.warnings = std::move(stations.warnings);
   for (std::size_t i = 0; i < scans.size(); ++i) {
     const int id = static_cast<int>(i);
     if (looks[i].error) {
@@ -180,7 +191,10 @@ SurveyPlan plan_survey(const std::vector<io::ListedScan>& scans, const Settings&
       continue;
     }
     if (looks[i].unseen) continue;
-    plan.scans.push_back(make_plan(id, scans[i].scan, looks[i].content, plan.voxel_m, digests));
+    const auto station = stations.by_name.find(scans[i].scan.name);
+    plan.scans.push_back(make_plan(id, scans[i].scan, looks[i].content, plan.voxel_m,
+                                   station != stations.by_name.end() ? std::optional(station->second) : std::nullopt,
+                                   digests));
     plan.scans.back().identity = looks[i].identity;
     plan.scans.back().bytes =
         bytes_to_make(scans[i].scan, *looks[i].scale, plan.voxel_m, settings.sampling.target_points);

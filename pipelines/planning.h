@@ -26,6 +26,7 @@ struct SurveyPlan {
   std::vector<ScanPlan> scans;  ///< ascending ids
   std::vector<FailedScan> failed;
   std::vector<int> unseen;  ///< new or changed, and not this process's to look at
+  std::vector<std::string> warnings;
 };
 
 /// Reads digests and probes of all scans in parallel. An id is an index into `scans`. The voxel is the one from the

@@ -197,8 +197,9 @@ Result<JobResult> run_job(const Job& job, const std::string& command, const Even
   if (!control) return tl::unexpected(control.error());
   std::vector<std::string> names;
   for (const io::ListedScan& scan : listing->scans) names.push_back(scan.scan.name);
-  const Result<ScanPositions> positions = read_positions(job.settings.candidates.positions, names);
-  if (!positions) return tl::unexpected(positions.error());
+  for (const auto& read :
+       {read_positions(job.settings.candidates.positions, names), read_stations(job.settings.sampling.stations, names)})
+    if (!read) return tl::unexpected(read.error());
   for (const std::string& note : listing->notes) events.info(note);
   bool with_view = false;
   if (job.share.is_whole()) {

@@ -15,15 +15,15 @@ namespace isthmus::pipelines {
 namespace {
 
 constexpr std::array<const char*, 4> kColumns = {"scan", "x", "y", "z"};
-constexpr std::size_t kRequired = 3;
+constexpr std::size_t kWithoutHeight = 3, kWithHeight = 4;  // columns there have to be
 
 using Columns = std::array<std::size_t, kColumns.size()>;
 
-Result<Columns> columns_of(const std::vector<std::string>& header, const std::string& where) {
+Result<Columns> columns_of(const std::vector<std::string>& header, std::size_t num_required, const std::string& where) {
   Columns columns{};
   for (std::size_t k = 0; k < kColumns.size(); ++k) {
     columns[k] = static_cast<std::size_t>(std::ranges::find(header, kColumns[k]) - header.begin());
-    if (columns[k] < header.size() || k >= kRequired) continue;
+    if (columns[k] < header.size() || k >= num_required) continue;
     return fail(fmt::format("there is no column '{}'", kColumns[k]), where,
                 "the first line names the columns: scan,x,y,z");
   }
@@ -44,9 +44,7 @@ Result<Eigen::Vector3d> position_of(const std::vector<std::string>& fields, cons
   return position;
 }
 
-}  // namespace
-
-Result<ScanPositions> read_positions(const std::string& file, std::span<const std::string> scans) {
+Result<ScanPositions> read(const std::string& file, std::span<const std::string> scans, std::size_t num_required) {
   ScanPositions positions;
   if (file.empty()) return positions;
   const Result<std::string> text = read_file(file);
@@ -54,7 +52,7 @@ Result<ScanPositions> read_positions(const std::string& file, std::span<const st
   const std::vector<CsvLine> lines = csv_lines(*text);
   if (lines.empty()) return fail("there are no positions in it", file, "the first line names the columns: scan,x,y,z");
   const auto place = [&](const CsvLine& line) { return fmt::format("{}:{}", file, line.number); };
-  const Result<Columns> columns = columns_of(lines.front().fields, place(lines.front()));
+  const Result<Columns> columns = columns_of(lines.front().fields, num_required, place(lines.front()));
   if (!columns) return tl::unexpected(columns.error());
   for (const CsvLine& line : std::span(lines).subspan(1)) {
     if (line.fields.size() != lines.front().fields.size()) {
@@ -72,6 +70,16 @@ Result<ScanPositions> read_positions(const std::string& file, std::span<const st
       return fail(fmt::format("a second position for {}", scans[*scan]), place(line));
   }
   return positions;
+}
+
+}  // namespace
+
+Result<ScanPositions> read_positions(const std::string& file, std::span<const std::string> scans) {
+  return read(file, scans, kWithoutHeight);
+}
+
+Result<ScanPositions> read_stations(const std::string& file, std::span<const std::string> scans) {
+  return read(file, scans, kWithHeight);
 }
 
 }  // namespace isthmus::pipelines

@@ -11,7 +11,7 @@
 
 namespace isthmus::pipelines {
 
-/// Positions in metres, one frame for all.
+/// Positions in metres; in which frame is up to the file that they are from.
 struct ScanPositions {
   std::map<std::string, Eigen::Vector3d> by_name;  ///< of scans, as in scans.csv
   std::vector<std::string> warnings;               ///< rows that name no scan of the survey
@@ -21,5 +21,9 @@ struct ScanPositions {
 /// beside them. Scans are named as in scans.csv, or by their file's name with or without its extension. An empty path
 /// is no positions. Errors name line and value.
 Result<ScanPositions> read_positions(const std::string& file, std::span<const std::string> scans);
+
+/// Where the scanner stood, each in the coordinates of its scan's own file (sampling.stations): read_positions() with
+/// heights.
+Result<ScanPositions> read_stations(const std::string& file, std::span<const std::string> scans);
 
 }  // namespace isthmus::pipelines

@@ -9,6 +9,7 @@
 
 #include "pipelines/code_versions.h"
 #include "pipelines/intensity_sampler.h"
+#include "scan/station_frame.h"
 
 namespace isthmus::pipelines {
 namespace {
@@ -53,12 +54,16 @@ Result<T> load_or_make(const store::Store& store, const store::Key& key, const s
 Result<SampledScan> read_and_reduce(const ScanPlan& plan, const SamplingOptions& options, const store::Store& store) {
   Result<std::unique_ptr<io::ScanReader>> reader = io::open_scan(plan.ref);
   if (!reader) return tl::unexpected(reader.error());
-  VoxelSampler sampler((*reader)->header(), plan.voxel_m, options);
+  ScanHeader header = (*reader)->header();
+  if (plan.station_in_scan) header.station_in_scan = plan.station_in_scan;
+  const StationFrame frame(header);
+  VoxelSampler sampler(header, plan.voxel_m, options);
   IntensitySampler intensities(plan.voxel_m);
   PointChunk chunk;
   for (;;) {
     if (Result<void> done = (*reader)->read(chunk, kChunkPoints); !done) return tl::unexpected(done.error());
     if (chunk.points.empty()) break;
+    frame.move(chunk);
     sampler.add(chunk);
     intensities.add(chunk);
   }
@@ -123,16 +128,20 @@ Error by_name(Error error, const io::ScanRef& ref) {
 }
 
 ScanPlan make_plan(int id, const io::ScanRef& ref, const std::string& content_digest, double voxel_m,
-                   const SettingsDigests& settings) {
+                   const std::optional<Eigen::Vector3d>& station_in_scan, const SettingsDigests& settings) {
   ScanPlan plan;
   plan.id = id;
   plan.ref = ref;
   plan.voxel_m = voxel_m;
+  plan.station_in_scan = station_in_scan;
   const auto key = [](const char* stage, const char* version, const std::vector<std::string>& inputs) {
     return store::make_key(stage, version, inputs);
   };
-  plan.sampled = key("sampled", kSampledVersion,
-                     {content_digest, fmt::format("{}", ref.index), fmt::format("{}", voxel_m), settings.sampling});
+  std::vector<std::string> inputs = {content_digest, fmt::format("{}", ref.index), fmt::format("{}", voxel_m),
+                                     settings.sampling};
+  if (station_in_scan)
+    inputs.push_back(fmt::format("{} {} {}", station_in_scan->x(), station_in_scan->y(), station_in_scan->z()));
+  plan.sampled = key("sampled", kSampledVersion, inputs);
   plan.intensity = key("intensity", kSampledVersion, {plan.sampled.digest});
   plan.features = key("features", kFeaturesVersion, {plan.sampled.digest, settings.features});
   plan.regions = key("regions", kRegionsVersion, {plan.features.digest, settings.regions});

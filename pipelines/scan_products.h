@@ -25,8 +25,9 @@ struct ScanPlan {
   int id = 0;
   io::ScanRef ref;
   double voxel_m = 0;
-  store::FileIdentity identity{};  ///< of the file when its content was looked at
-  std::size_t bytes = 0;           ///< estimate of the memory that making its products needs
+  std::optional<Eigen::Vector3d> station_in_scan;  ///< as given by the user, before the file's own word
+  store::FileIdentity identity{};                  ///< of the file when its content was looked at
+  std::size_t bytes = 0;                           ///< estimate of the memory that making its products needs
   store::Key sampled, features, regions, summary;
   store::Key intensity;  ///< of the finest sampling's points, for pictures; made with the sampling
 };
@@ -34,10 +35,10 @@ struct ScanPlan {
 /// The error with the scan's name wherever its path stood: the same words wherever the folder lies.
 Error by_name(Error error, const io::ScanRef& ref);
 
-/// Fills in the keys from the digest of the file's content, the voxel and the settings. Neither name nor id enters a
-/// key: a renamed scan keeps its products.
+/// Fills in the keys from the digest of the file's content, the voxel, the given station and the settings. Neither name
+/// nor id enters a key: a renamed scan keeps its products.
 ScanPlan make_plan(int id, const io::ScanRef& ref, const std::string& content_digest, double voxel_m,
-                   const SettingsDigests& settings);
+                   const std::optional<Eigen::Vector3d>& station_in_scan, const SettingsDigests& settings);
 
 /// The little that planning, pairs and reports need of a scan once its products are in the store.
 struct ScanSummary {

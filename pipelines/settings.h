@@ -36,6 +36,8 @@ struct Settings {
   /// Views of the options above, in the order of the walk of a scan; valid as long as these settings stay where they
   /// are.
   std::vector<config::Stage> stages();
+  /// The settings that name a file or folder: relative to a job's file when they stand in one. Valid as stages() is.
+  std::vector<std::string*> paths() { return {&sampling.stations, &candidates.positions, &run.store}; }
 };
 
 /// Digests of the settings that decide each stage's result.

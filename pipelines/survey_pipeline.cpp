@@ -499,6 +499,10 @@ SurveyOutcome run_survey(const std::vector<io::ListedScan>& scans, const Setting
       out.scans[static_cast<std::size_t>(failed.id)].error = failed.error;
       events.warn(failed.error.text());
     }
+    for (const std::string& warning : plan.warnings) {
+      out.warnings.push_back(warning);
+      events.warn(warning);
+    }
     for (const int id : plan.unseen) out.scans[static_cast<std::size_t>(id)].missing = true;
     for (const ScanPlan& scan : plan.scans) {
       ScanOutcome& outcome = out.scans[static_cast<std::size_t>(scan.id)];

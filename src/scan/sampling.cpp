@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unordered_set>
 
 namespace isthmus {
 
 const config::OptionTable<SamplingOptions>& sampling_options_table() {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
   static const config::OptionTable<SamplingOptions> table{
       "sampling",
       "Reduction of each scan to one point a voxel, with a normal.",
@@ -50,6 +52,20 @@ const config::OptionTable<SamplingOptions>& sampling_options_table() {
            "origin: "
            "believe it unchecked; unknown: use no free space.",
            "docs/stages/sampling.md"},
+          // Which station a scan is given enters the keys of its own products: a new line costs one scan, not all.
+          {"stations",
+           &SamplingOptions::stations,
+           "",
+           -kInf,
+           kInf,
+           {},
+           "CSV file of where the scanner stood, columns scan,x,y,z in metres, in the coordinates of each scan's own "
+           "file: for LAS, "
+           "PLY and text in map coordinates, which have no place for it. Taken before the file's own word, checked "
+           "like "
+           "it.",
+           "docs/stages/sampling.md",
+           false},
       }};
   return table;
 }

@@ -16,6 +16,7 @@ struct SamplingOptions {
   int target_points = 15000;      ///< voxel points a scan should be reduced to when the voxel is automatic
   bool drop_no_return = true;
   std::string station = "auto";  ///< auto, origin, unknown
+  std::string stations;          ///< CSV file of stations in the scans' own coordinates; empty: none
 };
 const config::OptionTable<SamplingOptions>& sampling_options_table();
 

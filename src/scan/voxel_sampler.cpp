@@ -436,10 +436,12 @@ Result<SampledScan> VoxelSampler::finish() {
     orient_outwards(out.points, static_cast<float>(s.voxel_m), out.normals);
     orient_like(out.points, out.normals, static_cast<float>(s.voxel_m), out.fine.points, out.fine.normals);
     out.notes.push_back(s.candidate_station
-                            ? fmt::format("the origin is not the station ({:.0f} % of the sight lines blocked, "
+                            ? fmt::format("the {} is not the station ({:.0f} % of the sight lines blocked, "
                                           "concentration {:.2f}): free space is not used",
-                                          100 * check.blocked, check.concentration)
-                            : std::string("station unknown: free space is not used"));
+                                          s.station_from_file ? "place that is stated" : "origin", 100 * check.blocked,
+                                          check.concentration)
+                            : std::string("station unknown: free space is not used") +
+                                  (s.options.station == "unknown" ? "" : " (sampling.stations can name it)"));
   }
   return out;
 }

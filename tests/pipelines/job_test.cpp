@@ -27,7 +27,8 @@ class JobFile : public ::testing::Test {
 
 TEST_F(JobFile, paths_are_relative_to_the_file) {
   const auto jobs = read(
-      "input: scans\noutput: ../out\nsettings:\n  sampling: {voxel_m: 0.2}\n  run: {store: kept}\n"
+      "input: scans\noutput: ../out\nsettings:\n  sampling: {voxel_m: 0.2, stations: tripods.csv}\n  run: {store: "
+      "kept}\n"
       "  candidates: {positions: sketch.csv}\n");
   ASSERT_TRUE(jobs) << jobs.error().text();
   ASSERT_EQ(jobs->size(), 1U);
@@ -38,6 +39,7 @@ TEST_F(JobFile, paths_are_relative_to_the_file) {
   EXPECT_EQ(job.settings.origins.at("sampling.voxel_m"), file_.string() + ":4");
   EXPECT_EQ(store_folder(job), folder_ / "kept");
   EXPECT_EQ(job.settings.candidates.positions, (folder_ / "sketch.csv").string());
+  EXPECT_EQ(job.settings.sampling.stations, (folder_ / "tripods.csv").string());
 }
 
 TEST_F(JobFile, a_list_is_a_batch) {

@@ -55,6 +55,18 @@ TEST_F(ScanPositionsFile, errors_name_line_and_value) {
   EXPECT_FALSE(read_positions((folder_ / "missing.csv").string(), names_));
 }
 
+TEST_F(ScanPositionsFile, stations_have_heights) {
+  const std::string file = (folder_ / "stations.csv").string();
+  std::ofstream(file) << "scan,x,y,z\nb,512345.678,5243210.987,432.1\n";
+  const auto stations = read_stations(file, names_);
+  ASSERT_TRUE(stations) << stations.error().text();
+  EXPECT_EQ(stations->by_name.at("floor1/b.ply"), Eigen::Vector3d(512345.678, 5243210.987, 432.1));
+  std::ofstream(file) << "scan,x,y\nb,1,2\n";
+  const auto flat = read_stations(file, names_);
+  ASSERT_FALSE(flat);
+  EXPECT_NE(flat.error().text().find("no column 'z'"), std::string::npos) << flat.error().text();
+}
+
 TEST_F(ScanPositionsFile, no_file_is_no_positions) {
   const auto positions = read_positions("", names_);
   ASSERT_TRUE(positions);

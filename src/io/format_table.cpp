@@ -71,7 +71,11 @@ Result<const Format*> format_of(const std::filesystem::path& path) {
   for (const Format& format : kFormats) {
     if (lists(format.extensions, extension)) return &format;
   }
-  return fail("unsupported format " + in_quotes("." + extension), path.string(), "readable: " + readable_extensions());
+  const std::string what = extension.empty() ? "without an extension its format is not known"
+                                             : "unsupported format " + in_quotes("." + extension);
+  return fail(what, path.string(),
+              (is_known_but_unsupported(path) ? "export it as E57 with its maker's program; " : "") +
+                  ("readable: " + readable_extensions()));
 }
 
 std::size_t preference_of(const std::filesystem::path& path) {

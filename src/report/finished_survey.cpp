@@ -115,6 +115,10 @@ int FinishedSurvey::num_components() const {
 }
 
 Result<FinishedSurvey> read_finished_survey(const std::filesystem::path& out) {
+  std::error_code error;
+  if (!std::filesystem::exists(out / "pose_graph.g2o", error))
+    return fail(std::filesystem::is_directory(out, error) ? "no survey was finished in this folder" : "no such folder",
+                out.string(), "name the output folder of 'isthmus register'");
   FinishedSurvey survey;
   const auto ids = read_graph(out / "pose_graph.g2o", survey);
   if (!ids) return tl::unexpected(ids.error());

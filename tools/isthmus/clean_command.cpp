@@ -7,6 +7,7 @@
 #include "base/disk_space.h"
 #include "commands.h"
 #include "exit_codes.h"
+#include "number_checks.h"
 #include "pipelines/clean.h"
 #include "terminal.h"
 
@@ -52,13 +53,13 @@ void add_clean(CLI::App& app, int& exit_code) {
       ->type_name("DIR");
   command->add_option("--keep-days", run->keep_days, "Keep what is not needed but was made in the last N days")
       ->type_name("N")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
   command
       ->add_option(
           "--max-size", run->max_gb,
           "Keep of what is not needed the youngest that fit into N GB with the rest; needed products always stay")
       ->type_name("GB")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
   command->add_flag("--dry-run", run->dry_run, "Say what would be removed and remove nothing");
   command->callback([run, &exit_code] { exit_code = run->run(); });
 }

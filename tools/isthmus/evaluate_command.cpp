@@ -9,6 +9,7 @@
 #include "commands.h"
 #include "evaluate/evaluate.h"
 #include "exit_codes.h"
+#include "number_checks.h"
 #include "terminal.h"
 
 namespace isthmus::cli {
@@ -66,13 +67,13 @@ void add_evaluate(CLI::App& app, int& exit_code) {
   command->add_option("--overlaps", run->overlaps, "Overlaps of pairs; computed from the scans if not given")
       ->type_name("FILE");
   command->add_option("--scans", run->scans, "Folder of the scans (default: where the truth lies)")->type_name("DIR");
-  command->add_option("--voxel", run->voxel_m, "Evaluation voxel, metres")->type_name("M")->check(CLI::PositiveNumber);
+  command->add_option("--voxel", run->voxel_m, "Evaluation voxel, metres")->type_name("M")->check(above_zero());
   command->add_option("--max-deg", run->max_deg, "A pose is good within this rotation")
       ->type_name("DEG")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command->add_option("--max-m", run->max_m, "and this distance (default: two evaluation voxels)")
       ->type_name("M")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command->add_flag("--json", run->json, "Print JSON instead of text");
   command->add_option("--json-file", run->json_file, "Also write JSON to this file")->type_name("FILE");
   command->callback([run, &exit_code] { exit_code = run->run(); });

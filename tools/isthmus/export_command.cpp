@@ -14,8 +14,11 @@
 #include "commands.h"
 #include "exit_codes.h"
 #include "io/crs.h"
+#include "io/format_table.h"
 #include "io/scan_directory.h"
 #include "io/wording.h"
+#include "number_checks.h"
+#include "pipelines/job.h"
 #include "pipelines/merged_export.h"
 #include "pipelines/ptx_export.h"
 #include "report/pose_exports.h"
@@ -26,19 +29,40 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder the scans were read from, by run.json.
+/// The folder that the names of the scans are relative to, by resolved.yaml, which says where they lie from OUT
+/// (run.json has it as it was typed, from wherever that was).
 Result<fs::path> input_folder(const fs::path& out) {
-  const fs::path path = out / "run.json";
-  const Result<std::string> text = read_file(path);
-  if (!text) return tl::unexpected(text.error());
-  const auto json = nlohmann::json::parse(*text, nullptr, false);
-  const nlohmann::json* input = nullptr;
-  if (json.is_object() && json.contains("run") && json["run"].contains("input")) input = &json["run"]["input"];
+  constexpr const char* kHint = "name it: --scans DIR";
+  const fs::path file = out / "resolved.yaml";
+  const Result<std::vector<pipelines::Job>> jobs = pipelines::read_jobs(file);
+  if (!jobs) return fail(jobs.error().what, jobs.error().where, kHint);
+  const std::vector<fs::path>& inputs = jobs->front().inputs;
   std::error_code error;
-  if (input != nullptr && input->is_string() && fs::is_directory(input->get<std::string>(), error)) {
-    return fs::path(input->get<std::string>());
-  }
-  return fail("the folder of the scans is not named there, or is gone", path.string(), "name it: --scans DIR");
+  for (const fs::path& input : inputs)
+    if (!fs::exists(input, error)) return fail("the scans are not there any more", input.string(), kHint);
+  if (inputs.size() == 1 && fs::is_directory(inputs[0], error)) return inputs[0];
+  const Result<io::ScanListing> listing = io::list_scans(inputs);
+  if (!listing) return tl::unexpected(listing.error());
+  return listing->base;
+}
+
+/// What is written is what the name says.
+CLI::Validator ends_in_ptx() {
+  return {[](const std::string& file) {
+            return io::lower_case(fs::path(file).extension().string()) == ".ptx" ? std::string()
+                                                                                 : file + " does not end in .ptx";
+          },
+          ""};
+}
+
+CLI::Validator e57_or_folder() {
+  return {[](const std::string& path) -> std::string {
+            std::error_code error;
+            const auto format = io::format_of(path);
+            if (!format || (*format)->name == std::string_view("e57") || fs::is_directory(path, error)) return "";
+            return path + " is no name for E57: name FILE.e57, or a folder";
+          },
+          ""};
 }
 
 struct ExportRun {
@@ -153,7 +177,8 @@ struct ExportRun {
     if (!text) return tl::unexpected(text.error());
     Result<io::Crs> parsed = io::parse_crs(*text);
     if (parsed) return std::optional<io::Crs>(std::move(*parsed));
-    return fail(parsed.error().what, in_file ? crs : "--crs", parsed.error().hint);
+    return fail(parsed.error().what + (in_file ? "" : ", and there is no such file"), in_file ? crs : "--crs",
+                parsed.error().hint);
   }
 
   /// A reference system said of coordinates that are not in it misleads whoever opens the file.
@@ -201,8 +226,11 @@ void add_export(CLI::App& app, int& exit_code) {
       ->type_name("FILE")
       ->needs(poses);
   command->add_option("--e57", run->e57, "Scans with their poses as E57: all in FILE.e57, or one file each in a folder")
-      ->type_name("PATH");
-  command->add_option("--ptx", run->ptx, "Scans with their poses filled in as one PTX file")->type_name("FILE.ptx");
+      ->type_name("PATH")
+      ->check(e57_or_folder());
+  command->add_option("--ptx", run->ptx, "Scans with their poses filled in as one PTX file")
+      ->type_name("FILE.ptx")
+      ->check(ends_in_ptx());
   CLI::Option* merged =
       command
           ->add_option("--merged", run->merged,
@@ -214,18 +242,20 @@ void add_export(CLI::App& app, int& exit_code) {
           });
   command->add_option("--voxel", run->voxel_m, "Keep one point of the merged cloud in each cube of this edge, metres")
       ->type_name("METRES")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->needs(merged);
   command
       ->add_option("--crs", run->crs,
                    "Coordinate reference system for LAS, LAZ and E57 to state: EPSG:25832, EPSG:25832+7837, WKT, or a "
                    "file of WKT")
       ->type_name("SYSTEM");
-  CLI::Option* scans =
-      command->add_option("--scans", run->scans, "Folder of the scans (default: by OUT/run.json)")->type_name("DIR");
+  CLI::Option* scans = command
+                           ->add_option("--scans", run->scans,
+                                        "Folder of the scans (default: where they were read, by OUT/resolved.yaml)")
+                           ->type_name("DIR");
   command->add_option("--component", run->component, "Which component (default: 0, the largest)")
       ->type_name("K")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
   command->callback([run, scans, &exit_code] {
     if (run->poses.empty() && !run->wants_scans()) throw CLI::RequiredError("--poses, --e57, --ptx or --merged");
     if (!run->crs.empty() && run->e57.empty() && run->merged.empty())

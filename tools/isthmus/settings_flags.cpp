@@ -1,4 +1,5 @@
 #include "settings_flags.h"
+#include "number_checks.h"
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -40,7 +41,7 @@ void SettingsFlags::add_shard(CLI::App& command) {
                   "A shard that needs what others have not made yet gives up when nothing came for so long (default: "
                   "600); it can be run again")
       ->type_name("SECONDS")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
 }
 
 Result<void> SettingsFlags::apply(pipelines::Job& job) const {

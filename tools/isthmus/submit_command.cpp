@@ -9,6 +9,7 @@
 
 #include "commands.h"
 #include "exit_codes.h"
+#include "number_checks.h"
 #include "pipelines/slurm.h"
 #include "settings_flags.h"
 #include "store/journal.h"
@@ -101,15 +102,15 @@ void add_submit(CLI::App& app, int& exit_code) {
   command->add_option("--partition", run->slurm.partition, "Partition (default: the cluster's)")->type_name("NAME");
   command->add_option("--cpus", run->slurm.cpus, "Processors, and threads, of a task (default: 1)")
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command->add_option("--tasks", run->slurm.most_tasks, "Most tasks of an array (default: 100)")
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command
       ->add_option("--task-minutes", run->slurm.task_minutes,
                    "Short scans and pairs are packed until a task takes about so long (default: 10)")
       ->type_name("M")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command->add_option("--sbatch", run->slurm.more, "A further argument of sbatch, such as --sbatch=--mem=4G")
       ->type_name("ARG")
       ->allow_extra_args(false);

@@ -12,6 +12,7 @@
 
 #include "commands.h"
 #include "exit_codes.h"
+#include "number_checks.h"
 #include "pipelines/night.h"
 #include "terminal.h"
 
@@ -73,7 +74,7 @@ void add_watch(CLI::App& app, int& exit_code) {
   command->add_option("OUT", run->out, "Output folder of the run")->required();
   command->add_option("--every", run->every_s, "Seconds between two looks (default: 1; 10 where it is no terminal)")
       ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command->add_flag("--once", run->once, "Look once");
   command->callback([run, &exit_code] { exit_code = run->run(); });
 }

@@ -55,7 +55,7 @@ class ExportCommand : public ::testing::Test {
     for (const int id : {0, 2, 3, 4, 5}) graph << "VERTEX_SE3:QUAT " << id << rest << "\n";
     for (const char* ids : {"0 2", "0 3", "4 5"}) graph << "EDGE_SE3:QUAT " << ids << rest << information << "\n";
     graph.close();
-    std::ofstream(out_ / "run.json") << R"({"run": {"input": ")" << scans_.string() << "\"}}\n";
+    std::ofstream(out_ / "resolved.yaml") << "input: \"../scans\"\noutput: \".\"\n";
   }
   testing::Said run(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), {"export", out_.string()});
@@ -222,8 +222,7 @@ TEST_F(ExportCommand, TheReferenceSystemIsStatedWhereTheFormatHasAPlaceForIt) {
   };
   const fs::path las = folder_ / "a.las", e57 = folder_ / "a.e57";
   const auto say_frame = [&](const std::string& component) {
-    std::ofstream(out_ / "run.json") << R"({"run": {"input": ")" << scans_.string() << R"("}, "components": [)"
-                                     << component << "]}";
+    std::ofstream(out_ / "run.json") << R"({"components": [)" << component << "]}";
   };
   say_frame("{}");
   testing::Said said = run({"--merged", las.string(), "--crs", wkt});
@@ -294,16 +293,49 @@ TEST_F(ExportCommand, WhatIsMissingIsNamed) {
   const testing::Said component = run({"--poses", "csv", "--component", "2"});
   EXPECT_EQ(component.exit_code, 1);
   EXPECT_NE(component.err.find("the survey has 2 components, there is no 2"), std::string::npos) << component.err;
-  std::ofstream(out_ / "run.json") << "{}";
-  const testing::Said input = run({"--e57", (folder_ / "x.e57").string()});
-  EXPECT_EQ(input.exit_code, 1);
-  EXPECT_NE(input.err.find("--scans DIR"), std::string::npos) << input.err;
+  for (const char* text : {"input: \"../gone\"\noutput: \".\"\n", "{}"}) {
+    std::ofstream(out_ / "resolved.yaml") << text;
+    const testing::Said input = run({"--e57", (folder_ / "x.e57").string()});
+    EXPECT_EQ(input.exit_code, 1);
+    EXPECT_NE(input.err.find("--scans DIR"), std::string::npos) << input.err;
+  }
   EXPECT_EQ(run({"--e57", (folder_ / "x.e57").string(), "--scans", scans_.string()}).exit_code, 0);
   fs::remove(scans_ / "sub/a b.ply");
   const testing::Said scan = run({"--e57", (folder_ / "y.e57").string(), "--scans", scans_.string()});
   EXPECT_EQ(scan.exit_code, 1);
   EXPECT_NE(scan.err.find("a%20b.ply"), std::string::npos) << scan.err;
   EXPECT_FALSE(fs::exists(folder_ / "y.e57"));
+}
+
+TEST_F(ExportCommand, NamesThatSayAnotherFormatAreRefused) {
+  for (const auto& [option, name] :
+       {std::pair("--ptx", "x.las"), std::pair("--e57", "x.las"), std::pair("--merged", "x.txt")}) {
+    const testing::Said said = run({option, (folder_ / name).string()});
+    EXPECT_EQ(said.exit_code, 2) << said.err;
+    EXPECT_NE(said.err.find(name), std::string::npos) << said.err;
+    EXPECT_FALSE(fs::exists(folder_ / name));
+  }
+  const testing::Said voxel = run({"--merged", (folder_ / "x.ply").string(), "--voxel", "-1"});
+  EXPECT_EQ(voxel.exit_code, 2);
+  EXPECT_NE(voxel.err.find("--voxel: -1 is not above 0\n"), std::string::npos) << voxel.err;
+}
+
+TEST_F(ExportCommand, AFolderWithoutASurveyIsSaidToBeOne) {
+  out_ = folder_ / "nowhere";
+  testing::Said said = run({"--poses", "csv"});
+  EXPECT_EQ(said.exit_code, 1);
+  EXPECT_NE(said.err.find("nowhere: no such folder"), std::string::npos) << said.err;
+  out_ = scans_;
+  said = run({"--poses", "csv"});
+  EXPECT_NE(said.err.find("no survey was finished in this folder"), std::string::npos) << said.err;
+}
+
+TEST_F(ExportCommand, ScansThatWereNamedAsFilesAreFoundAgain) {
+  std::ofstream(out_ / "resolved.yaml") << "input:\n  - \"../scans/many.e57\"\n  - \"../scans/sub/a b.ply\"\n"
+                                        << "  - \"../scans/y.ply\"\n  - \"../scans/z.ply\"\noutput: \".\"\n";
+  const testing::Said said = run({"--merged", (folder_ / "all.ply").string()});
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_NE(said.err.find("300 points of 3 scans"), std::string::npos) << said.err;
 }
 
 }  // namespace

@@ -13,6 +13,8 @@ packages=(
   clang libclang-rt-14-dev
   # the 3D view of the report, and a browser to test the page in
   chromium
+  # a reader of PLY and PTX that shares nothing with ours, without a screen (29 MB)
+  cloudcompare
   # plots and the checks of results
   python3 python3-numpy python3-scipy python3-matplotlib python3-open3d
   # a Slurm of two nodes on this machine, for the test of isthmus submit

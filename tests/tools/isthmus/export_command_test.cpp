@@ -7,6 +7,7 @@
 #include "io/las/laz.h"
 #include "io/scan_writer.h"
 
+#include <algorithm>
 #include <sstream>
 
 namespace isthmus {
@@ -336,6 +337,61 @@ TEST_F(ExportCommand, ScansThatWereNamedAsFilesAreFoundAgain) {
   const testing::Said said = run({"--merged", (folder_ / "all.ply").string()});
   EXPECT_EQ(said.exit_code, 0) << said.err;
   EXPECT_NE(said.err.find("300 points of 3 scans"), std::string::npos) << said.err;
+}
+
+/// The clouds that CloudCompare finds in a file: its reader shares nothing with ours.
+class SeenByCloudCompare : public ExportCommand {
+ protected:
+  std::vector<std::vector<Eigen::Vector3d>> clouds_in(const fs::path& file) {
+    const std::string home = "HOME=" + folder_.path().string();  // it keeps settings there
+    const testing::Said said = testing::run_program(
+        "/usr/bin/env",
+        {home, "QT_QPA_PLATFORM=offscreen", "timeout", "120", "CloudCompare", "-SILENT", "-C_EXPORT_FMT", "ASC",
+         "-PREC", "9", "-NO_TIMESTAMP", "-O", file.string(), "-SAVE_CLOUDS"},
+        folder_.path());
+    EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
+    std::vector<fs::path> tables;
+    for (const auto& entry : fs::directory_iterator(file.parent_path()))
+      if (entry.path().extension() == ".asc") tables.push_back(entry.path());
+    std::sort(tables.begin(), tables.end());
+    std::vector<std::vector<Eigen::Vector3d>> clouds;
+    for (const fs::path& table : tables) {
+      std::istringstream lines(testing::text_of_file(table));
+      clouds.emplace_back();
+      for (std::string line; std::getline(lines, line);) {
+        Eigen::Vector3d p;
+        std::istringstream(line) >> p.x() >> p.y() >> p.z();
+        clouds.back().push_back(p);
+      }
+      fs::remove(table);
+    }
+    return clouds;
+  }
+};
+
+TEST_F(SeenByCloudCompare, ScansOfPtxAndPointsOfPlyStandWhereTheirPosesSay) {
+  if (!fs::exists("/usr/bin/CloudCompare")) GTEST_SKIP() << "no CloudCompare: apt-get install cloudcompare";
+  const auto expected = [](std::size_t scan, std::size_t i) {
+    const auto y = static_cast<double>(i);
+    return scan == 0   ? Eigen::Vector3d(10, y, 0)
+           : scan == 1 ? Eigen::Vector3d(5 - y, 6 + 12, 7)
+                       : Eigen::Vector3d(1 + 1, y + 2, 3);
+  };
+  constexpr double kFloat = 1e-5;  // it computes in floats
+  const fs::path folder = folder_ / "seen";
+  fs::create_directories(folder);
+  ASSERT_EQ(run({"--ptx", (folder / "all.ptx").string()}).exit_code, 0);
+  auto clouds = clouds_in(folder / "all.ptx");
+  ASSERT_EQ(clouds.size(), 3U);
+  for (std::size_t scan = 0; scan < 3; ++scan) {
+    ASSERT_EQ(clouds[scan].size(), 100U);
+    for (std::size_t i = 0; i < 100; ++i) EXPECT_LT((clouds[scan][i] - expected(scan, i)).norm(), kFloat);
+  }
+  ASSERT_EQ(run({"--merged", (folder / "all.ply").string()}).exit_code, 0);
+  clouds = clouds_in(folder / "all.ply");
+  ASSERT_EQ(clouds.size(), 1U);
+  ASSERT_EQ(clouds[0].size(), 300U);
+  for (std::size_t i = 0; i < 300; ++i) EXPECT_LT((clouds[0][i] - expected(i / 100, i % 100)).norm(), kFloat);
 }
 
 }  // namespace

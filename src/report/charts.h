@@ -11,11 +11,13 @@ namespace isthmus::report {
 inline constexpr int kNumBins = 10;
 struct VerdictBins {
   std::array<std::array<int, 3>, kNumBins> counts{};  ///< accepted, ambiguous, rejected
+  double bin_width = 1.0 / kNumBins;
 };
-/// Of pairs with a transform: overlap in tenths; residual in tenths of a voxel, the last bin with all beyond.
+/// Of pairs with a transform: overlap in tenths; residual in metres. The last bin holds all beyond; bins of lengths are
+/// as wide (1, 2 or 5 times a power of ten) as it takes for the accepted links to be told apart.
 VerdictBins overlap_bins(const SurveyRecord& record);
 VerdictBins residual_bins(const SurveyRecord& record);
-/// Of links with a loop (loop_closures.h): where it misses, in tenths of a voxel, the last bin with all beyond.
+/// Of links with a loop (loop_closures.h): by how much it misses, metres.
 VerdictBins loop_bins(const SurveyRecord& record);
 
 Seconds seconds_by_stage(const SurveyRecord& record);  ///< summed over scans and pairs

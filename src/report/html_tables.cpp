@@ -75,13 +75,16 @@ struct Column {
   const char* name;
   const char* help;
   double unit = 1;  ///< what one stands for when the column is compared with a number in the filter
+  bool is_number = true;
 };
+
+constexpr Column words(const char* name, const char* help) { return {name, help, 1, false}; }
 
 std::string header(std::initializer_list<Column> columns) {
   std::string out = "<thead><tr>";
   for (const Column& column : columns)
-    out += fmt::format("<th title=\"{}\" tabindex=\"0\" data-unit=\"{:g}\">{}</th>", column.help, column.unit,
-                       column.name);
+    out += fmt::format("<th{} title=\"{}\" tabindex=\"0\" data-unit=\"{:g}\">{}</th>",
+                       column.is_number ? " class=\"n\"" : "", column.help, column.unit, column.name);
   return out + "</tr></thead>";
 }
 
@@ -110,9 +113,9 @@ std::string link_table(const SurveyRecord& record) {
   });
   std::string out = "<table class=\"sortable\" id=\"links\">";
   out += header(
-      {{"source", "Later scan of the pair"},
-       {"target", "Earlier scan of the pair"},
-       {"verdict", "After the loops have spoken"},
+      {words("source", "Later scan of the pair"),
+       words("target", "Earlier scan of the pair"),
+       words("verdict", "After the loops have spoken"),
        {"alone", "Probability that the link is right, from the pair alone"},
        {"with loops", "The same, given the loops that confirm it"},
        {"overlap", "Share of points with a facing point of the other scan; the smaller direction", kPercent},
@@ -123,8 +126,8 @@ std::string link_table(const SurveyRecord& record) {
        {"loop error", "How far the shortest loop of other accepted links is from closing with this one", kMillimetre},
        {"off by", "Distance of this link from the solved poses at the source&#39;s centre", kMillimetre},
        {"turned by", "Rotation of this link against the solved poses", kDegree},
-       {"loop", "Whether a loop of links confirms it"},
-       {"reason", "Why the verdict is what it is"}});
+       words("loop", "Whether a loop of links confirms it"),
+       words("reason", "Why the verdict is what it is")});
   out += "<tbody>";
   const LoopClosures loops(record);
   for (const SolvedLink* l : links) out += link_row(record, *l, loops);
@@ -134,16 +137,16 @@ std::string link_table(const SurveyRecord& record) {
 std::string scan_table(const SurveyRecord& record) {
   std::string out = "<table class=\"sortable\" id=\"scans\">";
   out += header({{"id", "Vertex id in pose_graph.g2o"},
-                 {"name", "File"},
-                 {"status", "Placed: in a part of two or more scans"},
+                 words("name", "File"),
+                 words("status", "Placed: in a part of two or more scans"),
                  {"part", "Component; 0 is the largest"},
                  {"links", "Accepted links"},
                  {"position ±", "Standard deviation of the position relative to the anchor, worst direction"},
                  {"points read", "In the file"},
                  {"points used", "After voxel sampling"},
                  {"spacing", "Median distance of raw points"},
-                 {"station", "How the station's place is known"},
-                 {"notes", ""}});
+                 words("station", "How the station's place is known"),
+                 words("notes", "")});
   out += "<tbody>";
   for (const ScanRecord& scan : record.scans) {
     const PlacedScan* placed = record.solution.find(scan.id);

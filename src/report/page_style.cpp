@@ -80,20 +80,21 @@ svg.key { width: 34px; height: 10px; margin-left: 8px; } svg.key.round { width: 
 .matrix .row { text-anchor: end; } .bars .accepted { fill: var(--accepted); } .bars text { text-anchor: middle; } .bars .t0 { text-anchor: start; } .bars .t2 { text-anchor: end; }
 .bars .axis { stroke: var(--rule); } figure { margin: 0 0 14px; } figcaption { margin-top: 4px; }
 .scroll { overflow: auto; max-height: 560px; border: 1px solid var(--rule); border-radius: 10px; background: var(--card); }
-table { border-collapse: collapse; width: 100%; font-size: 13.5px; } td, th { padding: 5px 9px; text-align: left; vertical-align: top; white-space: nowrap; }
-.sortable th { position: sticky; top: 0; background: var(--card); box-shadow: inset 0 -1px var(--rule); cursor: pointer; font-weight: 600; z-index: 1; }
+table { border-collapse: collapse; width: 100%; font-size: 13.5px; } td, th { padding: 5px 8px; text-align: left; vertical-align: top; white-space: nowrap; }
+.sortable th { position: sticky; top: 0; background: var(--card); box-shadow: inset 0 -1px var(--rule); cursor: pointer; font-weight: 600; z-index: 1;
+  white-space: normal; vertical-align: bottom; } .sortable th.n { text-align: right; }
 .sortable th:hover { color: var(--accent); } th.up::after { content: " ↑"; } th.down::after { content: " ↓"; }
 tbody tr + tr td { border-top: 1px solid var(--rule); } .sortable tbody tr { cursor: pointer; } .sortable tbody tr:hover { background: var(--sea); }
 tr.hot, .sortable tbody tr.hot:hover { background: var(--mark); box-shadow: inset 4px 0 var(--pick); } tr.near { box-shadow: inset 4px 0 var(--pick); }
 :focus-visible { outline: 2px solid var(--pick); outline-offset: -2px; }
-td.n { text-align: right; font-variant-numeric: tabular-nums; } td.why { white-space: normal; min-width: 260px; color: var(--quiet); }
+td.n { text-align: right; font-variant-numeric: tabular-nums; } td.why { white-space: normal; min-width: 190px; color: var(--quiet); }
 .pill { font-size: 12px; font-weight: 600; padding: 1px 9px; border-radius: 99px; border: 1px solid currentColor; }
 .pill.accepted, .pill.placed { color: var(--accepted); } .pill.ambiguous, .pill.unplaced { color: var(--ambiguous); }
 .pill.rejected { color: var(--quiet); } .pill.failed { color: var(--failed); }
 .filters { display: flex; flex-wrap: wrap; gap: 8px; margin-bottom: 8px; } .filters button, .filters input { font: inherit; font-size: 13px;
   color: var(--ink); background: var(--card); border: 1px solid var(--rule); border-radius: 99px; padding: 3px 14px; }
 .filters button { cursor: pointer; } .filters button[aria-pressed=true] { background: var(--accent); border-color: var(--accent); color: var(--card); }
-.filters .count { margin-left: auto; align-self: center; } .filters input { min-width: 300px; }
+.filters .count { margin-left: auto; align-self: center; } .filters input { min-width: 340px; }
 ul.missing { list-style: none; padding: 0; margin: 0; } .missing li { background: var(--card); border: 1px solid var(--rule); border-left: 4px solid var(--ambiguous);
   border-radius: 8px; padding: 10px 16px; margin-bottom: 8px; } .missing li.failed { border-left-color: var(--failed); } .missing p { margin: 4px 0 0; color: var(--quiet); }
 .warnings li { margin-bottom: 4px; } details { margin: 10px 0; } summary { cursor: pointer; font-weight: 600; }

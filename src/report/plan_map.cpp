@@ -19,6 +19,7 @@ struct Sheet {
 };
 constexpr Sheet kLarge{1080, 620, 56};
 constexpr Sheet kSmall{520, 340, 44};
+constexpr double kLeastHeight = 0.55;  // of a large sheet: what a row of stations leaves empty is cut off
 // Stations whose least spread is along z within this angle count as a level survey.
 constexpr double kLevelCosine = 0.94;  // 20 degrees
 constexpr std::size_t kManyScans = 40;
@@ -61,7 +62,8 @@ struct Layout {
   double px_per_m = 1;
 };
 
-Layout laid_out(const SurveyRecord& record, const Component& component, const Sheet& sheet) {
+/// Lowers a sheet that may shrink to what the stations need.
+Layout laid_out(const SurveyRecord& record, const Component& component, bool may_shrink, Sheet& sheet) {
   std::vector<Eigen::Vector3d> stations;
   for (const int id : component.scans) stations.push_back(station_in_component(record, *find_scan(record, id)));
   Eigen::Matrix<double, 2, 3> view = view_of(stations);
@@ -77,6 +79,8 @@ Layout laid_out(const SurveyRecord& record, const Component& component, const Sh
   const Eigen::Vector2d span = (high - low).cwiseMax(1e-9);
   Layout layout;
   layout.px_per_m = std::min((sheet.width - 2 * sheet.margin) / span.x(), (sheet.height - 2 * sheet.margin) / span.y());
+  if (may_shrink)
+    sheet.height = std::clamp(span.y() * layout.px_per_m + 2 * sheet.margin, kLeastHeight * sheet.height, sheet.height);
   const Eigen::Vector2d middle = 0.5 * (low + high);
   for (std::size_t k = 0; k < stations.size(); ++k) {
     const Eigen::Vector2d p = (view * stations[k] - middle) * layout.px_per_m;
@@ -144,12 +148,14 @@ double typical_gap_px(const Layout& layout) {
 /// Keeps labels from covering dots and each other: those that find no room are left out (the tooltip has the name).
 class LabelRoom {
  public:
+  explicit LabelRoom(double width) : width_(width) {}
   void keep_free(const Eigen::Vector2d& dot, double radius) {
     taken_.push_back({dot.x() - radius, dot.x() + radius, dot.y() - radius, dot.y() + radius});
   }
   static double length(std::size_t letters, double font_px) { return 0.58 * font_px * static_cast<double>(letters); }
   bool take(const Eigen::Vector2d& corner, double length, double font_px) {
     const Box box{corner.x(), corner.x() + length, corner.y() - font_px, corner.y()};
+    if (box.left < 0 || box.right > width_) return false;
     for (const Box& b : taken_)
       if (box.left < b.right && b.left < box.right && box.top < b.bottom && b.top < box.bottom) return false;
     taken_.push_back(box);
@@ -160,6 +166,7 @@ class LabelRoom {
   struct Box {
     double left, right, top, bottom;
   };
+  double width_;  // of the sheet
   std::vector<Box> taken_;
 };
 
@@ -171,11 +178,11 @@ std::string station_title(const ScanRecord& scan, const PlacedScan& placed, bool
 }
 
 void draw_stations(std::string& svg, const SurveyRecord& record, const Component& component, const Layout& layout,
-                   bool large) {
+                   const Sheet& sheet, bool large) {
   const bool many = component.scans.size() > kManyScans;
   const double radius = std::clamp(0.3 * typical_gap_px(layout), 2.5, large ? 7.5 : 6.0);
   const double font_px = many ? 9.5 : 12;
-  LabelRoom room;
+  LabelRoom room(sheet.width);
   fmt::format_to(std::back_inserter(svg), "<g class=\"stations{}\">", many ? " many" : "");
   for (const auto& [id, spot] : layout.spots) {
     const ScanRecord& scan = *find_scan(record, id);
@@ -236,14 +243,14 @@ Eigen::Vector3d up_of_plan(const SurveyRecord& record, int component) {
 
 std::string plan_map_svg(const SurveyRecord& record, int component, bool large) {
   const Component& part = record.solution.components[component];
-  const Sheet& sheet = large ? kLarge : kSmall;
-  const Layout layout = laid_out(record, part, sheet);
+  Sheet sheet = large ? kLarge : kSmall;
+  const Layout layout = laid_out(record, part, large, sheet);
   std::string svg = fmt::format(
-      "<svg class=\"plan\" viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"Plan of part {} with {} stations\">",
+      "<svg class=\"plan\" viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"Plan of part {} with {} stations\">",
       sheet.width, sheet.height, component, part.scans.size());
   draw_footprints(svg, layout, sheet);
   draw_links(svg, record, layout, large);
-  draw_stations(svg, record, part, layout, large);
+  draw_stations(svg, record, part, layout, sheet, large);
   draw_scale(svg, layout, sheet);
   return svg + "</svg>";
 }

@@ -126,8 +126,8 @@ Json link_json(const SurveyRecord& record, const SolvedLink& l, const LoopClosur
   return out;
 }
 
-Json bins_json(const VerdictBins& bins, double width) {
-  Json out = {{"bin_width", width}};
+Json bins_json(const VerdictBins& bins) {
+  Json out = {{"bin_width", bins.bin_width}};
   constexpr std::array<const char*, 3> kNames = {"accepted", "ambiguous", "rejected"};
   for (std::size_t k = 0; k < kNames.size(); ++k) {
     Json counts = Json::array();
@@ -152,9 +152,9 @@ std::string report_json(const SurveyRecord& record) {
   json["links"] = Json::array();
   const LoopClosures loops(record);
   for (const SolvedLink& l : record.solution.links) json["links"].push_back(link_json(record, l, loops));
-  json["histograms"]["overlap"] = bins_json(overlap_bins(record), 1.0 / kNumBins);
-  json["histograms"]["rms_m"] = bins_json(residual_bins(record), record.voxel_m / kNumBins);
-  json["histograms"]["loop_error_m"] = bins_json(loop_bins(record), record.voxel_m / kNumBins);
+  json["histograms"]["overlap"] = bins_json(overlap_bins(record));
+  json["histograms"]["rms_m"] = bins_json(residual_bins(record));
+  json["histograms"]["loop_error_m"] = bins_json(loop_bins(record));
   json["edits"] = edits_json(record);
   json["control"] = control_json(record);
   json["warnings"] = warnings_json(record);

@@ -111,8 +111,12 @@ class View {
     this.shared.heights.value = { x: between(heights, 0.01), y: between(heights, 0.99) };
     this.floor = heights[0];
     this.roof = heights[heights.length - 1];
-    this.low = new Vector3(...values.map(v => between(v, 0.02)));
-    this.high = new Vector3(...values.map(v => between(v, 0.98)));
+    // What is seen through windows and gaps lies far off in a few points, and would make the survey small.
+    const low = new Vector3(...values.map(v => between(v, 0.1))), high = new Vector3(...values.map(v => between(v, 0.9)));
+    const beyond = high.clone().sub(low).multiplyScalar(0.125);
+    this.low = low.sub(beyond);
+    this.high = high.add(beyond);
+    for (const at of this.place.values()) { this.low.min(at); this.high.max(at); }
     this.reach = Math.max(this.low.distanceTo(this.high), 4 * data.voxel);
   }
 

@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "geometry/surface_lookup.h"
+
 namespace isthmus {
 
 struct StationCheck {
@@ -12,8 +14,19 @@ struct StationCheck {
   double median_range_m = 0;
 };
 
-/// Casts up to 1500 sight lines from `station` through the surface points. `normals` may have any sign.
-StationCheck check_station(std::span<const Eigen::Vector3f> points, std::span<const Eigen::Vector3f> normals,
-                           float voxel_m, const Eigen::Vector3f& station);
+/// Asks for one place after another whether the scanner stood there. Keeps references to the points.
+class SightLines {
+ public:
+  /// `normals` may have any sign.
+  SightLines(std::span<const Eigen::Vector3f> points, std::span<const Eigen::Vector3f> normals, float voxel_m);
+
+  /// Casts up to 1500 sight lines from `station` through the surface points.
+  [[nodiscard]] StationCheck from(const Eigen::Vector3f& station) const;
+
+ private:
+  std::span<const Eigen::Vector3f> points_, normals_;
+  float voxel_m_;
+  SurfaceLookup lookup_;
+};
 
 }  // namespace isthmus

@@ -320,15 +320,13 @@ double blocked_finely(const std::vector<Voxel>& fine, double fine_voxel_m, const
   constexpr double kMuchLess = 0.9;
   SurfacePoints surface;
   fill(surface, fine, fine_voxel_m);
-  const auto blocked_at = [&](const Eigen::Vector3f& place) {
-    return check_station(surface.points, surface.normals, static_cast<float>(fine_voxel_m), place).blocked;
-  };
-  const double here = blocked_at(station);
+  const SightLines lines(surface.points, surface.normals, static_cast<float>(fine_voxel_m));
+  const double here = lines.from(station).blocked;
   for (int axis = 0; axis < 3; ++axis)
     for (const float sign : {1.0f, -1.0f}) {
       const Eigen::Vector3f away =
           sign * kAway * static_cast<float>(coarse.median_range_m) * Eigen::Vector3f::Unit(axis);
-      if (here > kMuchLess * blocked_at(station + away)) return coarse.blocked;
+      if (here > kMuchLess * lines.from(station + away).blocked) return coarse.blocked;
     }
   return here;
 }
@@ -404,7 +402,7 @@ Result<SampledScan> VoxelSampler::finish() {
       s.candidate_station && !s.station_from_file && s.ray_sum.norm() < kCentred * std::sqrt(s.sq_range_sum * num_rays);
   StationCheck check;
   if (s.candidate_station) {
-    check = check_station(out.points, out.normals, static_cast<float>(s.voxel_m), *s.candidate_station);
+    check = SightLines(out.points, out.normals, static_cast<float>(s.voxel_m)).from(*s.candidate_station);
     if (check.blocked >= kMaxBlocked)
       check.blocked = blocked_finely(s.voxels, s.fine_voxel_m, *s.candidate_station, check);
   }

@@ -103,15 +103,15 @@ TEST(Station, CheckByHand) {
       }
   };
   add_wall(10, -10);
-  const StationCheck open = check_station(points, normals, 0.4f, Eigen::Vector3f::Zero());
+  const StationCheck open = SightLines(points, normals, 0.4f).from(Eigen::Vector3f::Zero());
   EXPECT_EQ(open.blocked, 0);
   EXPECT_GT(open.concentration, 0.9);
   EXPECT_NEAR(open.median_range_m, 10, 1);
   add_wall(4, 1);
-  const StationCheck half = check_station(points, normals, 0.4f, Eigen::Vector3f::Zero());
+  const StationCheck half = SightLines(points, normals, 0.4f).from(Eigen::Vector3f::Zero());
   EXPECT_LE(half.blocked, 210.0 / 651.0);
   EXPECT_GT(half.blocked, 0.5 * 210.0 / 651.0);
-  const StationCheck nothing = check_station({}, {}, 0.4f, Eigen::Vector3f::Zero());
+  const StationCheck nothing = SightLines({}, {}, 0.4f).from(Eigen::Vector3f::Zero());
   EXPECT_EQ(nothing.blocked, 1);
 }
 

@@ -36,6 +36,7 @@ struct PoseProfiles {
 struct Hypothesis {
   Transform target_from_source = Transform::Identity();
   const char* generator = "";
+  const void* climbed_on = nullptr;  ///< the source's model (a level) that climb() was last called with
   DirectedEvidence source, target;
   double rms_m = 0;                              ///< of the polish, point-to-plane
   double score = 0;                              ///< ranking: the larger the better

@@ -250,11 +250,15 @@ void polish_all(const ScanModel& source, const ScanModel& target, std::size_t po
   parallel_for_index(all.size(), 2, [&](std::size_t k) { polish(source, target, points, steps, all[k]); });
 }
 
+// What has climbed on this level stays where it is.
 void climb_best(const ScanModel& source, const ScanModel& target, std::vector<Hypothesis>& ranked) {
-  constexpr std::size_t kClimbed = 6, kClimbPoints = 700;
+  constexpr std::size_t kClimbed = 6, kClimbPoints = 700;  // 16 climbed found no more of 57 pairs
   constexpr double kFirstStepVoxels = 1;
-  parallel_for_index(std::min(kClimbed, ranked.size()), 1,
-                     [&](std::size_t k) { climb(source, target, kClimbPoints, kFirstStepVoxels, ranked[k]); });
+  parallel_for_index(std::min(kClimbed, ranked.size()), 1, [&](std::size_t k) {
+    if (ranked[k].climbed_on == &source) return;
+    climb(source, target, kClimbPoints, kFirstStepVoxels, ranked[k]);
+    ranked[k].climbed_on = &source;
+  });
 }
 
 Transform transform_of(const Pose3f& pose) {

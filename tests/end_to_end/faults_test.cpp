@@ -59,7 +59,12 @@ TEST_F(Faults, a_scan_cut_short_is_named_with_what_is_missing) {
   const Said said = register_scans();
   EXPECT_EQ(said.exit_code, 3) << said.err;
   EXPECT_NE(said.err.find("scan_001.ply"), std::string::npos) << said.err;
-  EXPECT_NE(text_of_file(out_ / "scans.csv").find("scan_001.ply,failed"), std::string::npos);
+  const std::string table = text_of_file(out_ / "scans.csv");
+  EXPECT_NE(table.find("scan_001.ply,failed"), std::string::npos) << table;
+  EXPECT_NE(table.find("the header says "), std::string::npos) << table;
+  EXPECT_NE(table.find(", the file holds "), std::string::npos) << table;
+  EXPECT_EQ(table.find("scan_000.ply,failed"), std::string::npos) << table;
+  EXPECT_EQ(table.find("scan_002.ply,failed"), std::string::npos) << table;
 }
 
 /// `ulimit -v`: from hardly enough to start to nearly enough to finish, the program says so and corrupts nothing.

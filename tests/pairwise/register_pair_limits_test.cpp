@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "pairwise/synthetic_product.h"
+#include "pairwise/threads.h"
 
 namespace isthmus {
 namespace {
@@ -90,6 +91,47 @@ TEST(RegisterPairLimits, EmptyScansDoNoHarmEvenWithAPrior) {
   for (const auto& [source, target] : std::vector<Both>{{&nothing, &whole}, {&whole, &nothing}, {&nothing, &nothing}}) {
     expect_not_accepted(register_pair(*source, *target, PairOptions{}, std::span(&prior, 1)));
     expect_not_accepted(register_pair(*source, *target, PairOptions{}));
+  }
+}
+
+// Equal columns at equal distances: every shift by a distance is a hypothesis, and there is no end of work to do.
+TEST(RegisterPairLimits, APairOfTooMuchWorkIsEndedByItsBudget) {
+  testing::Scene columns = testing::empty_room({44, 28, 4});
+  for (int x = -5; x <= 5; ++x)
+    for (int y = -3; y <= 3; ++y) columns.add_box({4.0 * x, 4.0 * y, 2}, {0.6, 0.6, 4});
+  const ScanProduct one = hall_scan(columns, pose_of({-7, 1, 1.7}), 1);
+  const ScanProduct two = hall_scan(columns, pose_of({5, -2, 1.7}, {0, 0, 1}), 2);
+
+  PairTrace wide_trace, trace;
+  PairOptions options;
+  register_pair(one, two, options, {}, &wide_trace);
+  options.max_seeds = 20;
+  options.max_ranked_seeds = 10;
+  options.max_hypotheses = 8;
+  options.congruent_hypotheses = 2;
+  options.fine_hypotheses = 4;
+  const PairResult result = register_pair(one, two, options, {}, &trace);
+  const std::size_t most_seeds = 20 + 10, most_grown = 2 * 8;  // of the two rounds
+  EXPECT_GT(wide_trace.seeds.size(), 2 * most_seeds) << "there was no more work than the budget allows";
+  EXPECT_GT(wide_trace.grown.size(), 2 * most_grown);
+  EXPECT_GT(wide_trace.fine.size(), 4U);
+  EXPECT_LE(trace.seeds.size(), most_seeds);
+  EXPECT_LE(trace.grown.size(), most_grown);
+  EXPECT_LE(trace.fine.size(), 4U);
+  expect_not_accepted(result);
+
+  // The budget counts work, not time: one thread or seven, it ends at the same place.
+  const auto again = [&](int threads) {
+    return testing::with_threads(threads, [&] { return register_pair(one, two, options); });
+  };
+  for (const PairResult& other : {again(1), again(7)}) {
+    EXPECT_EQ(other.counts, result.counts);
+    EXPECT_EQ(other.reason, result.reason);
+    EXPECT_EQ(other.probability, result.probability);
+    ASSERT_EQ(other.target_from_source.has_value(), result.target_from_source.has_value());
+    if (other.target_from_source) {
+      EXPECT_EQ(other.target_from_source->matrix(), result.target_from_source->matrix());
+    }
   }
 }
 

@@ -65,13 +65,10 @@ CONF
   return 1
 }
 
-# tasks_on NAME: processes of jobs there.
+# tasks_on NAME: processes of jobs there. Two programs for all processes: a task may last a second only.
 tasks_on() {
-  local pid
-  for pid in /proc/[0-9]*; do
-    { tr '\0' '\n' <"$pid/environ" | grep -cxE "SLURM_CONF=$cluster/slurm.conf|SLURMD_NODENAME=$1" | grep -qx 2; } 2>/dev/null &&
-      echo "${pid#/proc/}"
-  done
+  grep -lzxF "SLURM_CONF=$cluster/slurm.conf" /proc/[0-9]*/environ 2>/dev/null |
+    xargs -r grep -lzxF "SLURMD_NODENAME=$1" 2>/dev/null | cut -d/ -f3
   true
 }
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what building and testing need on a bare Debian 12 (bookworm). Safe to run again.
 set -euo pipefail
+. "$(dirname "$0")/debian_source.sh"
 
 packages=(
   # tools
@@ -29,26 +30,7 @@ as_root=()
 [ "$(id -u)" -eq 0 ] || as_root=(sudo)
 export DEBIAN_FRONTEND=noninteractive
 
-# Tarballs of LASzip's source by the first later release that has it, into the folder $1: through the mirror that this
-# machine's packages come from, with lists of its own, so that the machine's configuration stays as it is. apt checks
-# the signatures.
-fetch_laszip() {
-  local folder=$1 mirror suite apt
-  mirror=$(apt-get indextargets --format '$(REPO_URI) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' |
-    awk -v release="$(. /etc/os-release && echo "$VERSION_CODENAME")" '$2 == release && $3 == "main" {print $1; exit}')
-  [ -n "$mirror" ] || return 1
-  mkdir -p "$folder/lists/partial" "$folder/parts"
-  apt=(-qq -o "Dir::Etc::sourcelist=$folder/sources.list" -o "Dir::Etc::sourceparts=$folder/parts"
-    -o "Dir::State::lists=$folder/lists" -o APT::Sandbox::User=root -o Acquire::Retries=1)
-  for suite in trixie testing sid; do
-    echo "deb-src $mirror $suite main" >"$folder/sources.list"
-    (cd "$folder" && apt-get "${apt[@]}" update && apt-get "${apt[@]}" source --tar-only laszip) >"$folder/log" 2>&1 &&
-      ls "$folder"/laszip_*.orig.tar.* >/dev/null 2>&1 && return 0
-  done
-  return 1
-}
-
-# LASzip reads and writes LAZ. Debian 12 has no package of it; without it everything else works.
+# LASzip reads and writes LAZ. Debian 12 has no package of it, later releases have; without it everything else works.
 install_laszip() {
   local prefix=${ISTHMUS_LASZIP_PREFIX:-/usr/local} work
   for place in /usr "$prefix"; do
@@ -56,7 +38,8 @@ install_laszip() {
   done
   echo "setup: building LASzip into $prefix"
   work=$(mktemp -d)
-  if fetch_laszip "$work" && mkdir "$work/source" && tar -xf "$work"/laszip_*.orig.tar.* -C "$work/source" --strip-components=1 &&
+  if fetch_debian_source laszip "$work" trixie testing sid && mkdir "$work/source" &&
+    tar -xf "$work"/laszip_*.orig.tar.* -C "$work/source" --strip-components=1 &&
     cmake -S "$work/source" -B "$work/build" -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX="$prefix" \
       -DLASZIP_BUILD_STATIC=ON -DCMAKE_POSITION_INDEPENDENT_CODE=ON >"$work/log" 2>&1 &&
     cmake --build "$work/build" --parallel >"$work/log" 2>&1 &&

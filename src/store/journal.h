@@ -2,11 +2,10 @@
 //
 // OUT/journal/<time>-<host>-<process>.tsv, a file for each process, so that any number of machines may write:
 //   <seconds since 1970>  <event>  <stage>  <digest of the product's key>  <item>  <seconds it took>
-// separated by tabs. Events: run (item: the command); began, made, failed (item: with the reason) for work; progress (item: done/total, of
-// a stage as in Events); found (once
-// for each product), needed (not loaded, but a later run may want it) and kept for what the store gave and took;
-// stopped (item: what was done), ended (item: the exit code or what went wrong). Each line is one write(2): after kill
-// -9 at most the last is missing.
+// separated by tabs. Events: run (item: the command); began, made, failed (item: with the reason) for work; progress
+// (item: done/total, of a stage as in Events); found (once for each product), needed (not loaded, but a later run may
+// want it) and kept for what the store gave and took; stopped (item: what was done), ended (item: the exit code or what
+// went wrong). Each line is one write(2): after kill -9 at most the last is missing.
 #pragma once
 
 #include <filesystem>

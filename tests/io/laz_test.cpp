@@ -178,8 +178,7 @@ TEST_F(Laz, DamageInsideAChunkIsFoundWhereThePointsTellIt) {
     bytes.replace(bytes.size() / 3, 5000, 5000, '\0');
     const auto scan = whole(write("bad.laz", bytes));
     if (crs) {
-      EXPECT_NE(error_of(scan).find("the compressed points are damaged or missing from point "),
-                std::string::npos)
+      EXPECT_NE(error_of(scan).find("the compressed points are damaged or missing from point "), std::string::npos)
           << error_of(scan);
     } else {
       ASSERT_TRUE(scan) << error_of(scan);

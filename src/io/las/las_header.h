@@ -2,8 +2,8 @@
 //
 // Little endian: 0 "LASF", 24 version major minor, 94 header size, 96 offset of the points, 100 number of variable
 // length records, 104 point format (its upper two bits: compressed by LASzip), 105 bytes per point, 107 number of
-// points (32 bits), 131 scale x y z, 155 offset x y z, 179 largest and smallest x, y, z, from 1.4 on 247 number of points (64 bits). Source: "LAS
-// specification 1.4 - R15", ASPRS 2019.
+// points (32 bits), 131 scale x y z, 155 offset x y z, 179 largest and smallest x, y, z, from 1.4 on 247 number of
+// points (64 bits). Source: "LAS specification 1.4 - R15", ASPRS 2019.
 #pragma once
 
 #include <array>

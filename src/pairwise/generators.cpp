@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "regions/column_votes.h"
 #include "regions/pair_votes.h"
@@ -11,41 +12,41 @@
 namespace isthmus {
 namespace {
 
+// The seeds of `vote(source axis, target axis)` for the likeliest pairs of common axes, at most `most`.
+template <class Vote>
+std::vector<Seed> seeds_about_common_axes(const GeneratorContext& c, std::size_t most, Vote&& vote) {
+  auto axes = common_axes(c.source.features.axes, c.target.features.axes);
+  if (axes.size() > most) axes.resize(most);
+  std::vector<Seed> seeds;
+  for (const auto& [from, to] : axes) {
+    const std::vector<Seed> more = vote(from, to);
+    seeds.insert(seeds.end(), more.begin(), more.end());
+  }
+  return seeds;
+}
+
 std::vector<Seed> axis_votes(const GeneratorContext& c) {
   VoteOptions options;
   options.matches_per_keypoint = static_cast<std::uint32_t>(c.options.matches_per_keypoint);
   options.window_voxels = static_cast<float>(c.options.vote_window_voxels);
-  std::vector<Seed> seeds;
-  for (const auto& [from, to] : common_axes(c.source.features.axes, c.target.features.axes)) {
-    const auto more = vote_seeds_about_axis(c.source, c.target, c.matches, from, to, options);
-    seeds.insert(seeds.end(), more.begin(), more.end());
-  }
-  return seeds;
+  constexpr auto kAll = std::numeric_limits<std::size_t>::max();
+  return seeds_about_common_axes(c, kAll, [&](const Eigen::Vector3f& from, const Eigen::Vector3f& to) {
+    return vote_seeds_about_axis(c.source, c.target, c.matches, from, to, options);
+  });
 }
 
 std::vector<Seed> column_votes(const GeneratorContext& c) {
   constexpr std::size_t kMaxAxisPairs = 3;
-  auto axes = common_axes(c.source.features.axes, c.target.features.axes);
-  if (axes.size() > kMaxAxisPairs) axes.resize(kMaxAxisPairs);
-  std::vector<Seed> seeds;
-  for (const auto& [from, to] : axes) {
-    const auto more = vote_seeds_by_columns(c.source, c.target, from, to, {});
-    seeds.insert(seeds.end(), more.begin(), more.end());
-  }
-  return seeds;
+  return seeds_about_common_axes(c, kMaxAxisPairs, [&](const Eigen::Vector3f& from, const Eigen::Vector3f& to) {
+    return vote_seeds_by_columns(c.source, c.target, from, to, {});
+  });
 }
 
 std::vector<Seed> stem_votes(const GeneratorContext& c) {
   constexpr std::size_t kMaxAxisPairs = 2;
-  auto axes = common_axes(c.source.features.axes, c.target.features.axes);
-  if (axes.size() > kMaxAxisPairs) axes.resize(kMaxAxisPairs);
-  std::vector<Seed> seeds;
-  for (const auto& [from, to] : axes) {
-    const auto more = vote_seeds_by_stems(c.source, c.target, from, to, {});
-    seeds.insert(seeds.end(), more.begin(), more.end());
-  }
-  std::stable_sort(seeds.begin(), seeds.end(), [](const Seed& a, const Seed& b) { return a.score > b.score; });
-  return seeds;
+  return seeds_about_common_axes(c, kMaxAxisPairs, [&](const Eigen::Vector3f& from, const Eigen::Vector3f& to) {
+    return vote_seeds_by_stems(c.source, c.target, from, to, {});
+  });
 }
 
 std::vector<Seed> pair_votes(const GeneratorContext& c) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <numbers>
 
 namespace isthmus {
 namespace {
@@ -14,8 +13,6 @@ constexpr float kMinHorizontal = 0.8f;  // floors, ground, ceilings, tables
 constexpr float kClearFacing = 0.7f;    // mean resultant length of a column's headings: below it, it faces no one way
 
 std::int64_t cell_of(float value, float cell_m) { return static_cast<std::int64_t>(std::floor(value / cell_m)); }
-
-float wrapped(float angle) { return std::remainder(angle, 2 * std::numbers::pi_v<float>); }
 
 // Rare facings count: the weight falls with the number of columns around that face the same way.
 void weigh_columns(std::vector<Column>& columns, float cell_m) {

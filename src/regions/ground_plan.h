@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <unordered_map>
 #include <vector>
 
@@ -11,6 +12,9 @@
 #include "regions/scan_model.h"
 
 namespace isthmus {
+
+/// The same angle within half a turn of zero.
+inline float wrapped(float angle) { return std::remainder(angle, 2 * std::numbers::pi_v<float>); }
 
 /// A cell of the plan in which something stands upright.
 struct Column {

@@ -13,8 +13,6 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-float wrapped(float angle) { return std::remainder(angle, 2 * kPi); }
-
 }  // namespace
 
 ShiftVotes::ShiftVotes(const GroundPlan& source, const GroundPlan& target, float cell_m)

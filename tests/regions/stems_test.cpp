@@ -114,35 +114,33 @@ TEST(Stems, TheVerticalMayPointAnywhereAndNothingIsFoundInNothing) {
   EXPECT_LT((straight[0].centre - other[0].centre).norm(), 0.1f * kVoxel) << "but for points on the rims of cells";
 }
 
+// Two scans 25 m apart, of one scene or of two.
 struct Wood {
+  Transform world_from_source = pose_of({-9, 6, 1.7}, {0, 0, 2.2}), world_from_target = pose_of({11, -8, 1.7});
   ScanProduct a, b;
-  Transform target_from_source;
-};
+  ScanModel source{a.sampled, a.features, a.regions, ModelLevel::coarse};
+  ScanModel target{b.sampled, b.features, b.regions, ModelLevel::coarse};
 
-Wood scanned(const testing::Scene& at_source, const testing::Scene& at_target) {
-  const Transform world_from_source = pose_of({-9, 6, 1.7}, {0, 0, 2.2}), world_from_target = pose_of({11, -8, 1.7});
-  testing::SamplingSetup setup;
-  setup.options.station = "origin";
-  const auto product = [&](const testing::Scene& scene, const Transform& pose, std::uint64_t seed) {
+  Wood(const testing::Scene& at_source, const testing::Scene& at_target)
+      : a(product(at_source, world_from_source, 1)), b(product(at_target, world_from_target, 2)) {}
+  Wood(const Wood&) = delete;  // the lookups point into the products
+
+  static ScanProduct product(const testing::Scene& scene, const Transform& pose, std::uint64_t seed) {
+    testing::SamplingSetup setup;
+    setup.options.station = "origin";
     return testing::product_of(testing::scan_scene(scene, pose, {160000, 40, 0.004, seed}), 0.4, setup);
-  };
-  return {product(at_source, world_from_source, 1), product(at_target, world_from_target, 2),
-          world_from_target.inverse() * world_from_source};
-}
-
-std::vector<Seed> seeds_of(const Wood& wood, const ScanModel& source, const ScanModel& target) {
-  (void)wood;
-  return vote_seeds_by_stems(source, target, Eigen::Vector3f::UnitZ(), Eigen::Vector3f::UnitZ(), {});
-}
+  }
+  [[nodiscard]] std::vector<Seed> seeds() const {
+    return vote_seeds_by_stems(source, target, Eigen::Vector3f::UnitZ(), Eigen::Vector3f::UnitZ(), {});
+  }
+};
 
 TEST(StemVotes, PostsSeenFromOppositeSidesSettleThePair) {
   const testing::Scene plain = testing::posts(5, 0.2);
-  const Wood wood = scanned(plain, plain);
-  const ScanModel source(wood.a.sampled, wood.a.features, wood.a.regions, ModelLevel::coarse);
-  const ScanModel target(wood.b.sampled, wood.b.features, wood.b.regions, ModelLevel::coarse);
+  const Wood wood(plain, plain);
   const auto run = [&] {
     std::vector<float> out;
-    for (const Seed& s : seeds_of(wood, source, target)) {
+    for (const Seed& s : wood.seeds()) {
       out.insert(out.end(), s.rotation.data(), s.rotation.data() + 9);
       out.insert(out.end(), s.centre_in_target.data(), s.centre_in_target.data() + 3);
       out.push_back(s.score);
@@ -152,26 +150,22 @@ TEST(StemVotes, PostsSeenFromOppositeSidesSettleThePair) {
   const auto one = testing::with_threads(1, run);
   EXPECT_EQ(testing::with_threads(2, run), one);
   EXPECT_EQ(testing::with_threads(7, run), one);
-  const std::vector<Seed> seeds = seeds_of(wood, source, target);
-  EXPECT_EQ(first_right(source, wood.target_from_source, seeds), 1);
+  const std::vector<Seed> seeds = wood.seeds();
+  EXPECT_EQ(first_right(wood.source, wood.world_from_target.inverse() * wood.world_from_source, seeds), 1);
   EXPECT_TRUE(stems_settle(seeds));
 }
 
 TEST(StemVotes, AnotherWoodSettlesNothing) {
-  const Wood wood = scanned(testing::posts(5, 0.2), testing::posts(6, 0.2));
-  const ScanModel source(wood.a.sampled, wood.a.features, wood.a.regions, ModelLevel::coarse);
-  const ScanModel target(wood.b.sampled, wood.b.features, wood.b.regions, ModelLevel::coarse);
-  EXPECT_FALSE(stems_settle(seeds_of(wood, source, target)));
+  const Wood wood(testing::posts(5, 0.2), testing::posts(6, 0.2));
+  EXPECT_FALSE(stems_settle(wood.seeds()));
 }
 
 TEST(StemVotes, APlantationOnAGridSettlesNothing) {
   testing::Scene grid = testing::plain_ground();
   for (int x = -9; x <= 9; ++x)
     for (int y = -9; y <= 9; ++y) testing::add_post(grid, {4.0 * x, 4.0 * y, 0}, 0.3 * (x + 2 * y), 0.2);
-  const Wood wood = scanned(grid, grid);
-  const ScanModel source(wood.a.sampled, wood.a.features, wood.a.regions, ModelLevel::coarse);
-  const ScanModel target(wood.b.sampled, wood.b.features, wood.b.regions, ModelLevel::coarse);
-  const auto seeds = seeds_of(wood, source, target);
+  const Wood wood(grid, grid);
+  const auto seeds = wood.seeds();
   EXPECT_FALSE(stems_settle(seeds)) << "a step of the grid explains nearly as much";
   EXPECT_GT(seeds.size(), 1u);
 }

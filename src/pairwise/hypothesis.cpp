@@ -176,26 +176,89 @@ void climb(const ScanModel& source, const ScanModel& target, std::size_t max_poi
   hypothesis.target_from_source = orthonormalised(hypothesis.target_from_source);
 }
 
+namespace {
+
+constexpr std::size_t kMinMatches = 12;
+
+// A few matches on a line could throw a hypothesis anywhere: no step moves the scan by more than a few voxels.
+StepLimit step_limit(const ScanModel& source) {
+  constexpr double kMaxMoveVoxels = 2, kMaxTurnVoxels = 4;
+  const float voxel = source.voxel_m;
+  return {kMaxMoveVoxels * static_cast<double>(voxel),
+          kMaxTurnVoxels * static_cast<double>(voxel / std::max(source.extent_m, voxel))};
+}
+
+// Source points against target planes and target points against source planes in one system, about the source's
+// centroid in the target frame.
+NormalEquations both_ways(const ScanModel& source, const ScanModel& target, const Transform& t,
+                          std::span<const std::uint32_t> from, std::span<const std::uint32_t> to, float gate) {
+  NormalEquations forward, backward;
+  add_point_to_plane(source, target, t, from, false, gate, t * source.centroid.cast<double>(), forward);
+  add_point_to_plane(target, source, t.inverse(), to, false, gate, source.centroid.cast<double>(), backward);
+  // The backward step moves the target in the source frame; seen from the target it is the inverse motion: x -> -R x.
+  Matrix6d to_target = Matrix6d::Zero();
+  to_target.topLeftCorner<3, 3>() = -t.linear();
+  to_target.bottomRightCorner<3, 3>() = -t.linear();
+  forward.a += to_target * backward.a * to_target.transpose();
+  forward.b += to_target * backward.b;
+  forward.weight += backward.weight;
+  forward.sq_residual_sum += backward.sq_residual_sum;
+  forward.matches += backward.matches;
+  return forward;
+}
+
+double rms_of(const NormalEquations& e) { return std::sqrt(e.sq_residual_sum / std::max(e.weight, 1e-12)); }
+
+// Gate of the last steps: what surfaces leave between them, robustly (Rousseeuw, Croux 1993: 1.4826 times the median of
+// absolute residuals), not what corners and foliage leave; at most `widest`.
+float gate_of_residuals(const ScanModel& source, const ScanModel& target, const Transform& t,
+                        std::span<const std::uint32_t> from, std::span<const std::uint32_t> to, float widest) {
+  constexpr float kSigmas = 2.5f, kSigmaOfMedian = 1.4826f, kNarrowestVoxels = 0.02f;
+  std::vector<float> distances = distances_to_planes(source, target, t, from, widest);
+  const std::vector<float> backward = distances_to_planes(target, source, t.inverse(), to, widest);
+  distances.insert(distances.end(), backward.begin(), backward.end());
+  if (distances.size() < kMinMatches) return widest;
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return std::clamp(kSigmas * kSigmaOfMedian * *middle, kNarrowestVoxels * source.voxel_m, widest);
+}
+
+// Steps with a gate as narrow as the residuals allow, until they stand still.
+void align_closely(const ScanModel& source, const ScanModel& target, std::size_t max_points, Hypothesis& hypothesis) {
+  constexpr int kMaxSteps = 12;
+  constexpr std::size_t kGatePoints = 4000;
+  constexpr double kStillVoxels = 2e-4;
+  const auto from = even_sample(source, max_points), to = even_sample(target, max_points);
+  const auto gate_from = even_sample(source, kGatePoints), gate_to = even_sample(target, kGatePoints);
+  const double voxel = static_cast<double>(source.voxel_m), reach = static_cast<double>(source.extent_m);
+  Transform t = hypothesis.target_from_source;
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const float gate = gate_of_residuals(source, target, t, gate_from, gate_to, 0.5f * source.voxel_m);
+    const NormalEquations equations = both_ways(source, target, t, from, to, gate);
+    if (equations.matches < kMinMatches) break;
+    const Eigen::Vector3d middle = t * source.centroid.cast<double>();
+    const Transform moved = solved_step(equations, middle, voxel, step_limit(source));
+    t = moved * t;
+    hypothesis.rms_m = rms_of(equations);
+    const double motion = (moved * middle - middle).norm() + reach * rotation_angle_rad(moved.linear());
+    if (motion < kStillVoxels * voxel) break;
+  }
+  hypothesis.target_from_source = orthonormalised(t);
+}
+
+}  // namespace
+
 void polish(const ScanModel& source, const ScanModel& target, std::size_t max_points, int steps,
             Hypothesis& hypothesis) {
   const auto from = even_sample(source, max_points), to = even_sample(target, max_points);
-  constexpr std::size_t kMinMatches = 12;
-  // A few matches on a line could throw a hypothesis anywhere: no step moves the scan by more than a few voxels, and a
-  // step that loses the surface is taken back.
-  constexpr double kMaxMoveVoxels = 2, kMaxTurnVoxels = 4;
-  constexpr double kMinKept = 0.6;
+  constexpr double kMinKept = 0.6;  // a step that loses the surface is taken back
   Transform t = hypothesis.target_from_source, before = t;
   std::size_t matches_before = 0;
   const float voxel = source.voxel_m;
-  const StepLimit limit{kMaxMoveVoxels * static_cast<double>(voxel),
-                        kMaxTurnVoxels * static_cast<double>(voxel / std::max(source.extent_m, voxel))};
   for (int step = 0; step < steps; ++step) {
     const float gate = voxel * (step * 2 < steps ? 1.0f : 0.5f);
-    const Eigen::Vector3d middle = t * source.centroid.cast<double>();
-    NormalEquations forward, backward;
-    add_point_to_plane(source, target, t, from, false, gate, middle, forward);
-    add_point_to_plane(target, source, t.inverse(), to, false, gate, source.centroid.cast<double>(), backward);
-    const std::size_t matches = forward.matches + backward.matches;
+    const NormalEquations equations = both_ways(source, target, t, from, to, gate);
+    const std::size_t matches = equations.matches;
     if (static_cast<double>(matches) < kMinKept * static_cast<double>(matches_before)) {
       t = before;
       break;
@@ -204,28 +267,27 @@ void polish(const ScanModel& source, const ScanModel& target, std::size_t max_po
     // The gate halves half-way and drops matches by itself: compare only steps with the same gate.
     matches_before = (step + 1) * 2 >= steps && step * 2 < steps ? 0 : matches;
     before = t;
-    // The backward step moves the target in the source frame; seen from the target it is the inverse motion: x -> -R x.
-    Matrix6d to_target = Matrix6d::Zero();
-    to_target.topLeftCorner<3, 3>() = -t.linear();
-    to_target.bottomRightCorner<3, 3>() = -t.linear();
-    forward.a += to_target * backward.a * to_target.transpose();
-    forward.b += to_target * backward.b;
-    t = solved_step(forward, middle, voxel, limit) * t;
-    hypothesis.rms_m = std::sqrt((forward.sq_residual_sum + backward.sq_residual_sum) /
-                                 std::max(forward.weight + backward.weight, 1e-12));
+    t = solved_step(equations, t * source.centroid.cast<double>(), static_cast<double>(voxel), step_limit(source)) * t;
+    hypothesis.rms_m = rms_of(equations);
   }
   hypothesis.target_from_source = orthonormalised(t);
 }
 
-void polish_unless_worse(const ScanModel& source, const ScanModel& target, std::size_t max_points, int steps,
-                         Hypothesis& hypothesis) {
+void polish_closely_unless_worse(const ScanModel& source, const ScanModel& target, std::size_t max_points, int steps,
+                                 Hypothesis& hypothesis) {
   constexpr std::size_t kScorePoints = 2000;
   constexpr double kKept = 0.98;  // of the score: within what the sample of points makes of it
   const auto from = even_sample(source, kScorePoints), to = even_sample(target, kScorePoints);
+  const double before = score_alone(source, target, from, to, hypothesis.target_from_source);
+  const auto take_unless_worse = [&](const Hypothesis& moved) {
+    if (score_alone(source, target, from, to, moved.target_from_source) >= kKept * before) hypothesis = moved;
+  };
   Hypothesis polished = hypothesis;
   polish(source, target, max_points, steps, polished);
-  const double before = score_alone(source, target, from, to, hypothesis.target_from_source);
-  if (score_alone(source, target, from, to, polished.target_from_source) >= kKept * before) hypothesis = polished;
+  take_unless_worse(polished);
+  Hypothesis aligned = hypothesis;
+  align_closely(source, target, max_points, aligned);
+  take_unless_worse(aligned);
 }
 
 bool same_basin(const ScanModel& source, const Transform& a, const Transform& b) {

@@ -47,9 +47,11 @@ struct Hypothesis {
 void polish(const ScanModel& source, const ScanModel& target, std::size_t max_points, int steps,
             Hypothesis& hypothesis);
 
-/// The same, taken back where it loses support: rough normals can lead a good pose astray.
-void polish_unless_worse(const ScanModel& source, const ScanModel& target, std::size_t max_points, int steps,
-                         Hypothesis& hypothesis);
+/// The same, and steps on whose gate is as narrow as the residuals' median allows: what corners, edges and foliage
+/// leave is left out, planes decide. Either is taken back where it loses support: rough normals can lead a good pose
+/// astray.
+void polish_closely_unless_worse(const ScanModel& source, const ScanModel& target, std::size_t max_points, int steps,
+                                 Hypothesis& hypothesis);
 
 /// Pattern search (Hooke, Jeeves 1961) over the six degrees of freedom about the middle of the overlap, uphill in
 /// support and free space themselves: where normals are rough, as in foliage, point-to-plane steps do not find the way.

@@ -535,7 +535,7 @@ PairResult register_pair(const ScanProduct& source_product, const ScanProduct& t
   search.settle(fine_source, fine_target, hypotheses);
   Hypothesis best = hypotheses.front();
   constexpr std::size_t kFinalPoints = 20000;
-  polish_unless_worse(fine_source, fine_target, kFinalPoints, 5, best);
+  polish_closely_unless_worse(fine_source, fine_target, kFinalPoints, 5, best);
   const Pose3f pose{best.target_from_source.linear().cast<float>(),
                     best.target_from_source.translation().cast<float>()};
   const DirectedScore forward = score_direction(source, target, pose, {}, 1, false);

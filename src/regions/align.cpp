@@ -2,19 +2,20 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 
 namespace isthmus {
 
-void add_point_to_plane(const ScanModel& source, const ScanModel& target, const Transform& target_from_source,
-                        std::span<const std::uint32_t> sample, bool coarse, float gate_m, const Eigen::Vector3d& centre,
-                        NormalEquations& equations) {
+namespace {
+
+// Calls f(p in the target's frame, normal, distance along it) for every point of the sample that faces a plane of the
+// target closer than the gate.
+template <class F>
+void for_each_faced_plane(const ScanModel& source, const ScanModel& target, const Transform& target_from_source,
+                          std::span<const std::uint32_t> sample, const SurfaceLookup& lookup, float gate_m, F&& f) {
   constexpr float kMinFacing = 0.5f;
   const Eigen::Matrix3f rotation = target_from_source.linear().cast<float>();
   const Eigen::Vector3f translation = target_from_source.translation().cast<float>();
-  const Eigen::Vector3f middle = centre.cast<float>();
-  const SurfaceLookup& lookup = coarse ? target.coarse : target.fine;
-  Eigen::Matrix<float, 6, 6> a = Eigen::Matrix<float, 6, 6>::Zero();
-  Eigen::Matrix<float, 6, 1> b = Eigen::Matrix<float, 6, 1>::Zero();
   for (const std::uint32_t i : sample) {
     const Eigen::Vector3f p = rotation * source.points[i] + translation;
     const std::int32_t j = lookup.near(p);
@@ -22,19 +23,42 @@ void add_point_to_plane(const ScanModel& source, const ScanModel& target, const 
     const Eigen::Vector3f& n = target.normals[j];
     if (n.dot(rotation * source.normals[i]) < kMinFacing) continue;
     const float r = n.dot(p - target.points[j]);
-    const float ratio = r / gate_m;
-    if (ratio * ratio >= 1) continue;
-    const float w = (1 - ratio * ratio) * (1 - ratio * ratio);
-    Eigen::Matrix<float, 6, 1> j6;
-    j6 << n, (p - middle).cross(n);
-    a.noalias() += w * j6 * j6.transpose();
-    b.noalias() -= w * r * j6;
-    equations.weight += w;
-    equations.sq_residual_sum += static_cast<double>(w * r * r);
-    ++equations.matches;
+    if (r * r < gate_m * gate_m) f(p, n, r);
   }
+}
+
+}  // namespace
+
+void add_point_to_plane(const ScanModel& source, const ScanModel& target, const Transform& target_from_source,
+                        std::span<const std::uint32_t> sample, bool coarse, float gate_m, const Eigen::Vector3d& centre,
+                        NormalEquations& equations) {
+  const Eigen::Vector3f middle = centre.cast<float>();
+  Eigen::Matrix<float, 6, 6> a = Eigen::Matrix<float, 6, 6>::Zero();
+  Eigen::Matrix<float, 6, 1> b = Eigen::Matrix<float, 6, 1>::Zero();
+  for_each_faced_plane(source, target, target_from_source, sample, coarse ? target.coarse : target.fine, gate_m,
+                       [&](const Eigen::Vector3f& p, const Eigen::Vector3f& n, float r) {
+                         const float ratio = r / gate_m;
+                         const float w = (1 - ratio * ratio) * (1 - ratio * ratio);
+                         Eigen::Matrix<float, 6, 1> j6;
+                         j6 << n, (p - middle).cross(n);
+                         a.noalias() += w * j6 * j6.transpose();
+                         b.noalias() -= w * r * j6;
+                         equations.weight += w;
+                         equations.sq_residual_sum += static_cast<double>(w * r * r);
+                         ++equations.matches;
+                       });
   equations.a += a.cast<double>();
   equations.b += b.cast<double>();
+}
+
+std::vector<float> distances_to_planes(const ScanModel& source, const ScanModel& target,
+                                       const Transform& target_from_source, std::span<const std::uint32_t> sample,
+                                       float gate_m) {
+  std::vector<float> distances;
+  for_each_faced_plane(
+      source, target, target_from_source, sample, target.fine, gate_m,
+      [&](const Eigen::Vector3f&, const Eigen::Vector3f&, float r) { distances.push_back(std::abs(r)); });
+  return distances;
 }
 
 Transform solved_step(const NormalEquations& equations, const Eigen::Vector3d& centre, double voxel_m,

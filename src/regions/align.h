@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <span>
+#include <vector>
 
 #include "geometry/transform.h"
 #include "regions/scan_model.h"
@@ -24,6 +25,11 @@ struct NormalEquations {
 void add_point_to_plane(const ScanModel& source, const ScanModel& target, const Transform& target_from_source,
                         std::span<const std::uint32_t> sample, bool coarse, float gate_m, const Eigen::Vector3d& centre,
                         NormalEquations& equations);
+
+/// Distances along the target's normals, absolute, of the source points that such a step would use; metres.
+std::vector<float> distances_to_planes(const ScanModel& source, const ScanModel& target,
+                                       const Transform& target_from_source, std::span<const std::uint32_t> sample,
+                                       float gate_m);
 
 /// How far one step may go; a longer one is shortened as a whole.
 struct StepLimit {

@@ -144,9 +144,30 @@ TEST(Polish, UnlessWorseKeepsWhatItHad) {
     const Transform start = pose_of({rng.uniform(-1, 1), rng.uniform(-1, 1), 0}, {0, 0, rng.uniform(-0.2, 0.2)}) *
                             pair.data.target_from_source;
     Hypothesis h = at(start);
-    polish_unless_worse(pair.source, pair.target, 2000, 5, h);
+    polish_closely_unless_worse(pair.source, pair.target, 2000, 5, h);
     EXPECT_GE(score_of(pair, h.target_from_source), 0.9 * score_of(pair, start)) << "but for the sample of points";
   }
+}
+
+// Points that lie off the planes, as at edges and in foliage, all to one side.
+TEST(Polish, CloselyPlanesDecideNotWhatLiesOffThem) {
+  HallPair pair;
+  const Transform truth = pair.data.target_from_source;
+  SampledScan tilted = pair.data.source.sampled;
+  Rng rng(8);
+  for (std::vector<Eigen::Vector3f>* points : {&tilted.points, &tilted.fine.points})
+    for (Eigen::Vector3f& p : *points)
+      if (rng.uniform(0, 1) < 0.3) p += 0.25f * static_cast<float>(tilted.voxel_m) * Eigen::Vector3f(0, 0, 1);
+  const ScanModel source(tilted, pair.data.source.features, pair.data.source.regions, ModelLevel::coarse);
+  const auto off = [&](const Hypothesis& h) {
+    const Eigen::Vector3d middle = source.centroid.cast<double>();
+    return (h.target_from_source * middle - truth * middle).norm();
+  };
+  Hypothesis polished = at(truth), closely = polished;
+  polish(source, pair.target, 2000, 8, polished);
+  polish_closely_unless_worse(source, pair.target, 2000, 8, closely);
+  EXPECT_GT(off(polished), 0.03 * tilted.voxel_m) << "or there is nothing to be better than";
+  EXPECT_LT(off(closely), 0.5 * off(polished));
 }
 
 TEST(Weigh, TheSameForAnyNumberOfThreads) {

@@ -18,6 +18,8 @@ namespace {
 constexpr double kCeilingVoxels = 100.0;
 constexpr double kCeilingRad = 0.5;
 constexpr double kTightFloors = 4.0;  // two voxels with the default noise: surfaces within it meet
+// Two surfaces that were sampled differently meet to a hundredth of a voxel at best (docs/stages/verdict.md).
+constexpr double kOwnFloor = 0.02;
 // How far a rotation part may be from orthonormal before the measurement counts as broken rather than rounded.
 constexpr double kRotationTolerance = 1e-6;
 
@@ -31,6 +33,10 @@ Vector6d by_kind(double translation, double rotation) {
   Vector6d v;
   v << Eigen::Vector3d::Constant(translation), Eigen::Vector3d::Constant(rotation);
   return v;
+}
+
+Matrix6d sqrt_information_of(const Matrix6d& covariance) {
+  return Matrix6d(Matrix6d(covariance.inverse()).llt().matrixL()).transpose();
 }
 
 /// Covariance of a symmetric, possibly singular information: the ceiling is a weak prior, the floor is added noise.
@@ -120,9 +126,12 @@ MeasurementOrReason measurement_of(const Link& link, const GraphScan& source, co
   // d_local = Ad(centre) d_centred, so information_centred = Ad' information Ad.
   const Matrix6d ad = adjoint(local_from_centred);
   const Matrix6d symmetric = 0.5 * (r.information + r.information.transpose());
-  m.target_from_source.covariance = covariance_of(ad.transpose() * symmetric * ad, noise);
-  const Matrix6d information = m.target_from_source.covariance.inverse();
-  m.sqrt_information = Matrix6d(information.llt().matrixL()).transpose();
+  const Matrix6d own = ad.transpose() * symmetric * ad;
+  m.target_from_source.covariance = covariance_of(own, noise);
+  m.sqrt_information = sqrt_information_of(m.target_from_source.covariance);
+  NoiseModel least = noise;
+  least.floor_m *= kOwnFloor, least.floor_rad *= kOwnFloor;
+  m.own_sqrt_information = sqrt_information_of(covariance_of(own, least));
   return {m, {}};
 }
 

@@ -21,8 +21,11 @@ struct Measurement {
   int target = 0;                                ///< node
   Relative target_from_source;                   ///< between centred frames, noise floor included
   Matrix6d sqrt_information = Matrix6d::Zero();  ///< W with W' W = covariance^-1
-  double floor_m = 0;                            ///< noise floor at the source's centre: the unit of tight agreement
-  double floor_rad = 0;                          ///< the same for the rotation
+  /// The same by the link's own word, with a floor far below: how links weigh against each other once they are
+  /// believed.
+  Matrix6d own_sqrt_information = Matrix6d::Zero();
+  double floor_m = 0;     ///< noise floor at the source's centre: the unit of tight agreement
+  double floor_rad = 0;   ///< the same for the rotation
   double log_odds = 0;    ///< log p/(1-p) of the pair stage's probability, clipped; 0 for guided links
   bool accepted = false;  ///< by the pair stage; otherwise ambiguous
   bool votes = true;      ///< false for guided links, and for those that free space forbids

@@ -267,6 +267,39 @@ OptimisedPoses optimise(std::vector<Transform> root_from_node, std::span<const M
   return out;
 }
 
+OptimisedPoses optimise_by_precision(std::vector<Transform> root_from_node, std::span<const Measurement> measurements,
+                                     const std::vector<int>& fixed) {
+  constexpr double kDimension = 6, kFreedom = 4;  // degrees of freedom of the t distribution
+  constexpr double kPrior = 12;                   // observations that the pair stage's own scale counts for
+  constexpr int kMaxSteps = 20;
+  constexpr double kStill = 1e-3;  // of the scale
+  std::vector<Measurement> own(measurements.begin(), measurements.end());
+  for (Measurement& m : own) m.sqrt_information = m.own_sqrt_information;
+  std::vector<Pose> poses = poses_of(root_from_node);
+  OptimisedPoses out;
+  std::vector<double> weights(own.size(), 1.0);
+  const auto redundant =
+      static_cast<double>(own.size()) - static_cast<double>(poses.size()) + static_cast<double>(fixed.size());
+  double scale = 1;
+  for (int step = 0; step < kMaxSteps && !own.empty(); ++step) {
+    out.problem = solve_weighted(poses, own, weights, fixed);
+    const std::vector<double> chi2 = chi2_of_all(poses, own);
+    double sum = 0;
+    for (std::size_t e = 0; e < own.size(); ++e) {
+      weights[e] = (kFreedom + kDimension) / (kFreedom + chi2[e] / scale);
+      sum += weights[e] * chi2[e];
+    }
+    const double before = scale;
+    scale = (kPrior + sum) / (kPrior + kDimension * redundant);
+    if (std::abs(scale - before) < kStill * before) break;
+  }
+  for (std::size_t i = 0; i < poses.size(); ++i) root_from_node[i] = transform_of(poses[i]);
+  out.root_from_node = std::move(root_from_node);
+  for (double& w : weights) w /= scale;
+  out.weights = std::move(weights);
+  return out;
+}
+
 OptimisedPoses optimise_with_control(std::vector<Transform> shifted_from_node,
                                      std::span<const Measurement> measurements, std::span<const ControlTerm> terms,
                                      int held) {

@@ -22,6 +22,14 @@ struct OptimisedPoses {
 OptimisedPoses optimise(std::vector<Transform> root_from_node, std::span<const Measurement> measurements,
                         const std::vector<int>& fixed, double chi2_limit);
 
+/// Least squares over believed links, each weighed by its own word (`own_sqrt_information`) times what the others make
+/// of it: residuals are taken to follow a t distribution, so that a link that says too much of itself loses weight, and
+/// their common scale is estimated with them (Lange, Little, Taylor 1989, "Robust statistical modeling using the t
+/// distribution", section 2). Where loops are few the scale stays near that of the pair stage. The weights, over the
+/// scale, turn `own_sqrt_information` into what was used: times their roots. `fixed` as above.
+OptimisedPoses optimise_by_precision(std::vector<Transform> root_from_node, std::span<const Measurement> measurements,
+                                     const std::vector<int>& fixed);
+
 /// Least squares over links and control together, all of them believed; the weights stay empty. Poses are in the
 /// shifted world. `held` (or -1) is a node that keeps its place and heading: where only levels are known.
 OptimisedPoses optimise_with_control(std::vector<Transform> shifted_from_node,

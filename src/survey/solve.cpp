@@ -38,6 +38,7 @@ struct Solver {
   std::vector<Measurement> measurements;  // of links measured accepted or ambiguous
   std::vector<int> tree;                  // measurements that most loops agree with, ascending
   std::vector<Transform> root_from_node;  // solved, centred frames
+  std::vector<Measurement> weighed;       // the accepted ones as they weigh in the end; from weigh_by_precision()
   std::vector<char> undecided;            // per measurement: rejected with others, any of which may be the wrong one
   std::vector<char> doubted;              // per measurement: rejected because no loop could judge it
   std::vector<std::string> warnings;
@@ -97,7 +98,7 @@ Matrix6d information_in_local(const Measurement& m, const GraphScan& source) {
 }
 
 Solver prepared(const PoseGraph& graph, const SolveOptions& options) {
-  Solver s{options, graph.voxel_m, graph.scans, {}, {}, {}, {}, {}, {}, {}, true, {}};
+  Solver s{options, graph.voxel_m, graph.scans, {}, {}, {}, {}, {}, {}, {}, {}, true, {}};
   std::sort(s.scans.begin(), s.scans.end(), [](const GraphScan& a, const GraphScan& b) { return a.id < b.id; });
   std::map<int, int> node_of_id;
   for (int i = 0; i < s.num_nodes(); ++i) node_of_id.emplace(s.scans[i].id, i);
@@ -211,7 +212,7 @@ std::vector<char> accepted_mask(const Solver& s) {
   return mask;
 }
 
-/// Why the robust optimiser dropped a link: the shortest loop among the remaining ones, or the solved poses.
+/// Why a link was dropped: the shortest loop among the remaining ones, or the solved poses.
 std::string outlier_reason(const Solver& s, int e) {
   const Measurement& m = s.measurements[e];
   const std::vector<int> path = shortest_path(s.num_nodes(), s.measurements, accepted_mask(s), m.source, m.target);
@@ -399,6 +400,51 @@ void solve_links(Solver& s) {
   } while (promote_confirmed(s) || doubt_bridges(s));
 }
 
+/// Poses of the links that are believed, each weighing by what it knows. Which links are believed was judged with the
+/// wide noise floor, which makes all nearly equal: good for judging, wasteful for placing.
+void weigh_by_precision(Solver& s) {
+  const SpanningForest forest = forest_of(s.num_nodes(), s.measurements, spanning(s));
+  s.weighed.clear();
+  for (const int e : s.with_verdict(Verdict::accepted)) s.weighed.push_back(s.measurements[e]);
+  const OptimisedPoses solved = optimise_by_precision(s.root_from_node, s.weighed, values_of(anchors_of(s, forest)));
+  s.root_from_node = solved.root_from_node;
+  if (!solved.problem.empty()) s.warnings.push_back("pose optimisation: " + solved.problem);
+  for (std::size_t k = 0; k < s.weighed.size(); ++k) {
+    Measurement& m = s.weighed[k];
+    m.sqrt_information = std::sqrt(solved.weights[k]) * m.own_sqrt_information;
+    s.links[m.link].information_used = information_in_local(m, s.scans[m.source]);
+  }
+}
+
+/// Links that the pair stage left open and loops confirmed within the wide noise: seen from the precise poses, do they
+/// still meet? The one that misses most, by more than two floors (a voxel), if loops hold what it joins; -1 if none
+/// does.
+int loosest_promoted(const Solver& s) {
+  constexpr double kLooseFloors = 2;
+  const std::vector<char> in_loop = on_loops(s, true);
+  int loosest = -1;
+  double most = kLooseFloors;
+  for (const int e : s.with_verdict(Verdict::accepted)) {
+    const Measurement& m = s.measurements[e];
+    if (!in_loop[e] || s.links[m.link].measured == Verdict::accepted) continue;
+    const Vector6d d =
+        disagreement(m.target_from_source.b_from_a, s.root_from_node[m.target].inverse() * s.root_from_node[m.source]);
+    const double floors = std::max(d.head<3>().norm() / m.floor_m, d.tail<3>().norm() / m.floor_rad);
+    if (floors > most) most = floors, loosest = e;
+  }
+  return loosest;
+}
+
+void place_by_precision(Solver& s) {
+  weigh_by_precision(s);
+  for (int e = loosest_promoted(s); e >= 0; e = loosest_promoted(s)) {
+    s.judge(e, Verdict::rejected, outlier_reason(s, e));
+    s.links[s.measurements[e].link].information_used =
+        information_in_local(s.measurements[e], s.scans[s.measurements[e].source]);
+    weigh_by_precision(s);
+  }
+}
+
 /// Links that the pair stage accepted, and that were not believed again after all were distrusted.
 void reject_unconfirmed(Solver& s) {
   for (const int e : s.with_verdict(Verdict::ambiguous)) {
@@ -450,7 +496,7 @@ std::vector<Component> components_of(const Solver& s, const SpanningForest& fore
 /// Back from centred frames to local ones, and from the tree's root to the anchor.
 std::vector<PlacedScan> placed_scans(const Solver& s, const SpanningForest& forest, const std::map<int, int>& anchors,
                                      const std::vector<Component>& components) {
-  std::vector<Measurement> accepted;
+  std::vector<Measurement> accepted;  // with the wide floor: what all links may share, drift and movement, is in it
   for (const int e : s.with_verdict(Verdict::accepted)) accepted.push_back(s.measurements[e]);
   std::vector<std::optional<PoseSigma>> sigmas(s.scans.size());
   if (s.scans.size() <= kMaxScansForSigmas) sigmas = pose_sigmas(s.root_from_node, accepted, values_of(anchors));
@@ -557,8 +603,12 @@ std::optional<Georeference> georeference(Solver& s, const SpanningForest& forest
     if (terms[k].node >= 0 && forest.root[terms[k].node] == root) which.push_back(k), part.terms.push_back(terms[k]);
   if (part.terms.empty()) return std::nullopt;
   std::vector<Measurement> links;
-  for (const int e : s.with_verdict(Verdict::accepted))
-    if (forest.root[s.measurements[e].source] == root) links.push_back(s.measurements[e]);
+  // The solved shape, as stiff as the wide noise floor makes it: control may bend it, links no longer pull at it.
+  for (const int e : s.with_verdict(Verdict::accepted)) {
+    if (forest.root[s.measurements[e].source] != root) continue;
+    Measurement& m = links.emplace_back(s.measurements[e]);
+    m.target_from_source.b_from_a = s.root_from_node[m.target].inverse() * s.root_from_node[m.source];
+  }
   part.measurements = links;
   // The anchor's local frame is the root, so that a part that is only levelled stays where it is.
   const Transform rebased = Eigen::Translation3d(s.scans[anchor].centre) * s.root_from_node[anchor].inverse();
@@ -634,6 +684,7 @@ Solution solve(const PoseGraph& graph, const SolveOptions& options, const Contro
     solve_links(s);
     reject_unconfirmed(s);
   }
+  place_by_precision(s);
   const SpanningForest forest = forest_of(s.num_nodes(), s.measurements, spanning(s));
   const std::map<int, int> anchors = anchors_of(s, forest);
   Solution solution;

@@ -417,6 +417,41 @@ TEST(Solve, FramesOfTheScansDoNotMatter) {
   }
 }
 
+TEST(Solve, BelievedLinksWeighByWhatTheyKnow) {
+  World world(3);
+  world.exact(1, 0), world.exact(2, 1);
+  Link& rough = world.shifted(2, 0, 0.6 * kVoxel);
+  rough.result.information /= 400;  // 20 cm
+  const Solution solution = solve(world.graph, {});
+  EXPECT_EQ(accepted(solution).size(), 3u);
+  EXPECT_LT(worst_error_m(world, solution), 0.05 * kVoxel) << "equal weights leave a third of its error";
+}
+
+TEST(Solve, ALinkThatOverstatesItselfIsHeldBackByTheOthers) {
+  World world(6);
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < i; ++j)
+      if (i != 3 || j != 0) world.right(i, j, 0.98, Verdict::accepted, 0.02);
+  const double without = worst_error_m(world, solve(world.graph, {}));
+  world.shifted(3, 0, kVoxel);
+  const Solution solution = solve(world.graph, {});
+  EXPECT_EQ(accepted(solution).size(), 15u);
+  EXPECT_LT(worst_error_m(world, solution), without + 0.05 * kVoxel);
+}
+
+TEST(Solve, WhatLoopsPromotedButPrecisePosesMissIsNotALink) {
+  World world(4);
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < i; ++j)
+      if (i != 3 || j != 0) world.exact(i, j);
+  world.shifted(3, 0, 1.6 * kVoxel, 0.6, Verdict::ambiguous);
+  const Solution solution = solve(world.graph, {});
+  const SolvedLink* loose = find_link(solution, 3, 0);
+  EXPECT_EQ(loose->link.result.verdict, Verdict::rejected);
+  EXPECT_NE(loose->link.result.reason.find("disagrees with the loop"), std::string::npos) << loose->link.result.reason;
+  EXPECT_LT(worst_error_m(world, solution), 0.01 * kVoxel);
+}
+
 TEST(Solve, UncertaintyGrowsAlongAChain) {
   World world(4);
   for (int i = 0; i + 1 < 4; ++i) world.exact(i, i + 1);

@@ -9,12 +9,10 @@
 #include <utility>
 
 #include "pairwise/judge.h"
+#include "pipelines/testimony.h"
 
 namespace isthmus::pipelines {
 namespace {
-
-constexpr std::size_t kWitnesses = 12;    // pairs across a link
-constexpr double kTellingSupport = 0.05;  // a pair that neither meets nor contradicts says nothing
 
 /// Believed on its own word: neither told where to look nor ambiguous until others agreed. Where rooms repeat,
 /// ambiguous links agree with the wrong one.
@@ -35,45 +33,10 @@ std::optional<Sides> sides_of(const Solution& solution, const SolvedLink& link) 
   return sides;
 }
 
-PosedPair posed(const GuidedPair& pair) { return {pair.source, pair.target, pair.target_from_source}; }
-
-/// The first few of pairs that are sorted by predicted overlap.
-std::span<const GuidedPair> first_witnesses(const std::vector<GuidedPair>& across) {
-  return std::span(across).first(std::min(across.size(), kWitnesses));
-}
-
 struct Suspect {
   const SolvedLink* link = nullptr;
   Sides sides;
 };
-
-/// What the checked pairs across a suspect say, whoever called them.
-struct Testimony {
-  std::size_t num_telling = 0, num_forbidden = 0;
-  std::size_t clearest = 0;  ///< the pair with the most contradiction
-  /// Of 167 true pairs none was forbidden; of a floor one room off 37 of the 48 that meet, fewer where the rooms were
-  /// chosen to fit. One forbidden pair alone may be a door or a van.
-  [[nodiscard]] bool refutes() const {
-    constexpr double kShareOfSeveral = 0.2, kShareOfOne = 0.5;
-    const double share = num_telling > 0 ? static_cast<double>(num_forbidden) / static_cast<double>(num_telling) : 0.0;
-    return share >= (num_forbidden > 1 ? kShareOfSeveral : kShareOfOne);
-  }
-};
-
-/// `about` says whether a pair has a say.
-Testimony testimony_of(std::span<const PosedPair> pairs, std::span<const std::optional<PoseCheck>> checks,
-                       const std::function<bool(const PosedPair&)>& about) {
-  Testimony said;
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    if (!checks[k] || !about(pairs[k])) continue;
-    const bool forbidden = checks[k]->forbidden();
-    if (!forbidden && checks[k]->support < kTellingSupport) continue;
-    ++said.num_telling;
-    if (!forbidden) continue;
-    if (said.num_forbidden++ == 0 || checks[k]->contradiction > checks[said.clearest]->contradiction) said.clearest = k;
-  }
-  return said;
-}
 
 std::string name_of(std::span<const OutlinedScan> scans, int id) {
   const auto at = std::ranges::lower_bound(scans, id, {}, &OutlinedScan::id);

@@ -3,15 +3,13 @@
 // not.
 #pragma once
 
-#include <functional>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "pipelines/guided_pairs.h"
-#include "pipelines/model_pairs.h"
 #include "pipelines/part_joins.h"
+#include "pipelines/testimony.h"
 
 namespace isthmus::pipelines {
 
@@ -21,8 +19,6 @@ struct RefutedLink {
   int target = 0;
   std::string reason;
 };
-
-using PoseChecker = std::function<std::vector<std::optional<PoseCheck>>(std::span<const PosedPair>)>;
 
 /// For every believed link that no other link spans which is believed on its own word, the pairs of scans near it and
 /// across it that would overlap most: where too many of them stand in each other's seen-through space, one link is

@@ -9,7 +9,7 @@ namespace isthmus::pipelines {
 namespace {
 
 constexpr const char* kStage = "survey";
-constexpr const char* kVersion = "3";  // of the form of MeasuredSurvey in the store
+constexpr const char* kVersion = "4";  // of the form of MeasuredSurvey in the store
 
 }  // namespace
 

@@ -59,20 +59,14 @@ std::vector<GuidedPair> pairs_across(const std::map<int, int>& of_source, const 
   return found;
 }
 
-std::vector<PartJoin> possible_joins(const Solution& solution, const Summaries& summaries) {
-  std::vector<PartJoin> joins;
-  for (const SolvedLink& solved : solution.links) {
-    const PlacedScan *source = solution.find(solved.link.source), *target = solution.find(solved.link.target);
-    if (solved.link.result.verdict != Verdict::ambiguous || !solved.link.result.target_from_source ||
-        source == nullptr || target == nullptr || source->component == target->component)
-      continue;
-    joins.push_back({&solved, {}});
-  }
+namespace {
+
+void find_pairs_across(std::vector<PartJoin>& joins, const Solution& solution, const Summaries& summaries) {
   parallel_for_index(joins.size(), 1, [&](std::size_t k) {
     const Link& link = joins[k].link->link;
     const PlacedScan *source = solution.find(link.source), *target = solution.find(link.target);
     const Transform target_part_from_source_part =
-        target->component_from_local * *link.result.target_from_source * source->component_from_local.inverse();
+        target->component_from_local * joins[k].target_from_source * source->component_from_local.inverse();
     const auto posing = [&](int a, int b) -> std::optional<Transform> {  // b_from_a
       const PlacedScan *from = solution.find(a), *to = solution.find(b);
       if (from == nullptr || to == nullptr) return std::nullopt;
@@ -83,7 +77,37 @@ std::vector<PartJoin> possible_joins(const Solution& solution, const Summaries& 
     joins[k].across = pairs_across(link_distances(solution, link.source, believed),
                                    link_distances(solution, link.target, believed), summaries, posing);
   });
+}
+
+double score_of(const PairResult& result) {
+  const auto at = std::ranges::find(result.evidence, "score", &std::pair<std::string, double>::first);
+  return at != result.evidence.end() ? at->second : 0;
+}
+
+}  // namespace
+
+std::vector<PartJoin> possible_joins(const Solution& solution, const Summaries& summaries) {
+  std::vector<PartJoin> joins;
+  for (const SolvedLink& solved : solution.links) {
+    const PairResult& result = solved.link.result;
+    const PlacedScan *source = solution.find(solved.link.source), *target = solution.find(solved.link.target);
+    if (result.verdict != Verdict::ambiguous || !result.target_from_source || source == nullptr || target == nullptr ||
+        source->component == target->component)
+      continue;
+    joins.push_back({&solved, *result.target_from_source, score_of(result), {}});
+  }
+  find_pairs_across(joins, solution, summaries);
   return joins;
+}
+
+std::vector<PartJoin> rival_joins(std::span<const PartJoin> joins, const Solution& solution,
+                                  const Summaries& summaries) {
+  std::vector<PartJoin> rivals;
+  for (const PartJoin& join : joins)
+    for (const RivalPose& rival : join.link->link.result.rivals)
+      rivals.push_back({join.link, rival.target_from_source, rival.score, {}});
+  find_pairs_across(rivals, solution, summaries);
+  return rivals;
 }
 
 }  // namespace isthmus::pipelines

@@ -27,13 +27,19 @@ using Posing = std::function<std::optional<Transform>(int source, int target)>;
 std::vector<GuidedPair> pairs_across(const std::map<int, int>& of_source, const std::map<int, int>& of_target,
                                      const Summaries& summaries, const Posing& posing);
 
-/// An ambiguous link between two components.
+/// One pose of an ambiguous link between two components.
 struct PartJoin {
-  const SolvedLink* link = nullptr;  ///< of the solution
-  std::vector<GuidedPair> across;    ///< as above, if the link were right
+  const SolvedLink* link = nullptr;                      ///< of the solution
+  Transform target_from_source = Transform::Identity();  ///< between local frames: the link's own, or a rival's
+  double score = 0;                                      ///< of this pose, by the pair stage
+  std::vector<GuidedPair> across;                        ///< as above, if the pose were right
 };
 
 /// Every ambiguous link between two components. Those that nothing lies around have nothing across.
 std::vector<PartJoin> possible_joins(const Solution& solution, const Summaries& summaries);
+
+/// The rivals of the links of `joins`, likewise, in their order.
+std::vector<PartJoin> rival_joins(std::span<const PartJoin> joins, const Solution& solution,
+                                  const Summaries& summaries);
 
 }  // namespace isthmus::pipelines

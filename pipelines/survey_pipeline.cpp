@@ -15,6 +15,7 @@
 
 #include "pipelines/bridge_checks.h"
 #include "pipelines/byte_gate.h"
+#include "pipelines/confirmed_joins.h"
 #include "pipelines/model_pairs.h"
 #include "pipelines/pair_rounds.h"
 #include "pipelines/pair_stage.h"
@@ -304,7 +305,7 @@ class SurveyGraph {
   /// A guided result counts only where it says more than the first one did.
   static void keep(PairOutcome& pair, PairResult result, bool guided) {
     if (guided && result.verdict <= pair.result.verdict) return;
-    pair.refuted.clear();
+    pair.refuted.clear(), pair.confirmed.clear();
     pair.result = std::move(result);
     pair.guided = guided;
   }
@@ -344,7 +345,8 @@ class SurveyGraph {
             share_};
   }
 
-  /// Solves, asks the scans on both sides of links without a loop, and solves again without those they refute.
+  /// Solves, asks the scans on both sides of links without a loop and of ambiguous links between parts, and solves
+  /// again without those they refute and with those they confirm.
   void solve_and_check() {
     const ModelSources sources = model_sources();
     const auto check = [&](std::span<const PosedPair> pairs) { return check_poses(pairs, sources, events_, stop_); };
@@ -355,7 +357,9 @@ class SurveyGraph {
       if (stop_) return;
       if (take_out(refuted_bridge(out_.solution, outlined_scans(), check))) continue;
       joins_ = possible_joins(out_.solution, summaries_of(outlined_scans()));
-      if (!take_out(refuted_joins(joins_, outlined_scans(), check))) return;
+      if (take_out(refuted_joins(joins_, outlined_scans(), check))) continue;
+      if (!bring_in(confirmed_joins(joins_, out_.solution, outlined_scans(), check, settings_.pair.accept_probability)))
+        return;
     }
   }
 
@@ -365,6 +369,16 @@ class SurveyGraph {
     for (const RefutedLink& refuted : all) {
       const auto at = index_of_pair_.find(std::minmax(refuted.source, refuted.target));
       found = out_.pairs[at->second].refute(refuted.reason) || found;
+    }
+    return found;
+  }
+
+  /// True if any was not known to be confirmed.
+  bool bring_in(const std::vector<ConfirmedLink>& all) {
+    bool found = false;
+    for (const ConfirmedLink& link : all) {
+      const auto at = index_of_pair_.find(std::minmax(link.source, link.target));
+      found = out_.pairs[at->second].confirm(link.reason, link.probability) || found;
     }
     return found;
   }
@@ -399,8 +413,8 @@ class SurveyGraph {
       graph.scans.push_back({scan.id, scan.ref.name, scan.summary->centre, scan.summary->radius_m});
     }
     for (const PairOutcome& pair : out_.pairs)
-      graph.links.push_back({pair.source, pair.target, pair.result, pair.guided, pair.refuted, ByHand::nothing,
-                             pair.first_round, pair.second_round});
+      graph.links.push_back({pair.source, pair.target, pair.result, pair.guided, pair.refuted, pair.confirmed,
+                             pair.confirmed_probability, ByHand::nothing, pair.first_round, pair.second_round});
     return graph;
   }
 

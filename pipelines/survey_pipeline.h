@@ -45,10 +45,19 @@ struct PairOutcome {
   PairResult result;          ///< between local frames, before solving
   std::string refuted;        ///< why the scans around it forbid the link (bridge_checks.h); empty if they do not
 
+  std::string confirmed;  ///< why they confirm an ambiguous one (confirmed_joins.h); empty if they do not
+  double confirmed_probability = 0;
+
   /// False if it was refuted before.
   bool refute(const std::string& reason) {
     if (!refuted.empty()) return false;
     refuted = reason;
+    return true;
+  }
+  /// False if it was confirmed or refuted before.
+  bool confirm(const std::string& reason, double probability) {
+    if (!confirmed.empty() || !refuted.empty()) return false;
+    confirmed = reason, confirmed_probability = probability;
     return true;
   }
 };

@@ -42,12 +42,16 @@ bool unobserved(const PairEvidence& e) {
   return e.observability < kNotObserved;
 }
 
-// The terms that free space gave, as judge() wrote them down.
-PairEvidence free_space_terms(const PairResult& result) {
+// The terms that the probability is made of, as judge() wrote them down.
+PairEvidence terms_of(const PairResult& result) {
   PairEvidence evidence;
   for (const auto& [name, value] : result.evidence) {
+    if (name == "score") evidence.score = value;
+    if (name == "near_score") evidence.near_score = value;
+    if (name == "rival_score") evidence.rival_score = value;
     if (name == "contradiction") evidence.contradiction = value;
     if (name == "support") evidence.support = value;
+    if (name == "observability") evidence.observability = value;
   }
   return evidence;
 }
@@ -72,9 +76,15 @@ double probability_of(const PairEvidence& e) {
   return doubtful(e) ? std::min(p, kDoubtfulProbability) : p;
 }
 
-double contradicting_share(const PairResult& result) { return contradicting_share(free_space_terms(result)); }
+double probability_against(const PairResult& result, double rival_score) {
+  PairEvidence evidence = terms_of(result);
+  evidence.rival_score = rival_score;
+  return probability_of(evidence);
+}
 
-bool forbidden_by_free_space(const PairResult& result) { return vetoed(free_space_terms(result)); }
+double contradicting_share(const PairResult& result) { return contradicting_share(terms_of(result)); }
+
+bool forbidden_by_free_space(const PairResult& result) { return vetoed(terms_of(result)); }
 
 void judge(const PairEvidence& e, const PairOptions& options, PairResult& result) {
   result.evidence = {{"score", e.score},

@@ -30,6 +30,9 @@ struct PairEvidence {
 /// the sets it was fitted on and the sets it was checked on.
 double probability_of(const PairEvidence& evidence);
 
+/// The same for a result, as if the best pose elsewhere had this score: where others rule out what stood against it.
+double probability_against(const PairResult& result, double rival_score);
+
 /// Share of what lies in sight of the other station that contradicts the pose; 0 where nothing was measured.
 double contradicting_share(const PairResult& result);
 

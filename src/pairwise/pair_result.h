@@ -18,6 +18,19 @@ enum class Verdict : std::uint8_t {
 };
 const char* to_string(Verdict verdict);
 
+/// Another pose of a pair, elsewhere than its best. At most so many are kept, and none that scores less than this share
+/// of the best.
+inline constexpr std::size_t kMostRivals = 6;
+inline constexpr double kLeastRivalShare = 0.2;
+struct RivalPose {
+  Transform target_from_source = Transform::Identity();  ///< between the local frames
+  double score = 0;                                      ///< by the measure that ranked the best
+  template <class F>
+  void fields(F&& f) {
+    f(target_from_source), f(score);
+  }
+};
+
 /// Result of registering a source scan to a target scan. Starts as "not computed".
 struct PairResult {
   Verdict verdict = Verdict::failed;
@@ -32,13 +45,14 @@ struct PairResult {
   double overlap = 0;                                            ///< the smaller of the two
   double rms_m = 0;                                              ///< point-to-plane over the overlap
   std::vector<std::pair<std::string, double>> evidence;          ///< named terms, in a fixed order
+  std::vector<RivalPose> rivals;                                 ///< best first, each a basin of its own
   std::vector<std::pair<std::string, double>> seconds_by_stage;  ///< timings: never in deterministic outputs
   std::vector<std::pair<std::string, double>> counts;            ///< work counts: hypotheses, trials, ...
 
   template <class F>
   void fields(F&& f) {
     f(verdict), f(reason), f(probability), f(target_from_source), f(information), f(overlap_of_source);
-    f(overlap_of_target), f(overlap), f(rms_m), f(evidence), f(seconds_by_stage), f(counts);
+    f(overlap_of_target), f(overlap), f(rms_m), f(evidence), f(rivals), f(seconds_by_stage), f(counts);
   }
 };
 

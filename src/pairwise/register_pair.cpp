@@ -340,6 +340,21 @@ void note_rivals(const ScanModel& source, const std::vector<Hypothesis>& ranked,
   }
 }
 
+// The best poses elsewhere, one of each basin, that explain a share of what the best one explains. `ranked` is not
+// empty.
+std::vector<RivalPose> rivals_of(const ScanModel& source, const std::vector<Hypothesis>& ranked) {
+  std::vector<RivalPose> rivals;
+  for (const Hypothesis& h : ranked) {
+    if (rivals.size() == kMostRivals || h.score < kLeastRivalShare * ranked.front().score) break;
+    const bool known = same_basin(source, ranked.front().target_from_source, h.target_from_source) ||
+                       std::ranges::any_of(rivals, [&](const RivalPose& r) {
+                         return same_basin(source, r.target_from_source, h.target_from_source);
+                       });
+    if (!known) rivals.push_back({h.target_from_source, h.score});
+  }
+  return rivals;
+}
+
 // Whether the best pose leaves no need to look further. `ranked` by weigh().
 bool decisive(const ScanModel& source, const std::vector<Hypothesis>& ranked) {
   constexpr double kMargin = 3,
@@ -547,6 +562,7 @@ PairResult register_pair(const ScanProduct& source_product, const ScanProduct& t
   PairEvidence evidence;
   evidence.score = best.score;
   note_rivals(source, hypotheses, evidence);
+  result.rivals = rivals_of(source, hypotheses);
   evidence.support = std::min(best.source.support, best.target.support);
   evidence.rare_support = std::min(best.source.rare_support, best.target.rare_support);
   evidence.contradiction =

@@ -42,13 +42,17 @@ struct Link {
   bool guided = false;
   /// Why the survey around it forbids the link, whatever the pair says; empty if nothing does. It is rejected.
   std::string refuted;
+  /// Why the scans around its ends confirm an ambiguous link, and how probable it is with them; empty if they do not.
+  std::string confirmed;
+  double confirmed_probability = 0;
   ByHand by_hand = ByHand::nothing;  ///< a link that was taken out is not used; see hand_links.h
   bool first_round = false;          ///< tried on the promise of likeness and glances
   bool second_round = false;         ///< tried because solved poses or links found before proposed it
 
   template <class F>
   void fields(F&& f) {
-    f(source), f(target), f(result), f(guided), f(refuted), f(by_hand), f(first_round), f(second_round);
+    f(source), f(target), f(result), f(guided), f(refuted), f(confirmed), f(confirmed_probability), f(by_hand);
+    f(first_round), f(second_round);
   }
 };
 

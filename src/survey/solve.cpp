@@ -119,6 +119,7 @@ Solver prepared(const PoseGraph& graph, const SolveOptions& options) {
     }
     if (r.verdict != Verdict::accepted && r.verdict != Verdict::ambiguous) continue;
     if (r.verdict == Verdict::ambiguous && !r.target_from_source) continue;
+    const bool confirmed = r.verdict == Verdict::ambiguous && !s.links[k].link.confirmed.empty();
     const auto source = node_of_id.find(s.links[k].link.source), target = node_of_id.find(s.links[k].link.target);
     MeasurementOrReason m;
     if (source == node_of_id.end() || target == node_of_id.end() || source == target)
@@ -130,6 +131,13 @@ Solver prepared(const PoseGraph& graph, const SolveOptions& options) {
       r.verdict = Verdict::failed;
       r.reason = "the link cannot be used: " + m.reason;
       continue;
+    }
+    if (confirmed) {
+      r.reason = fmt::format("{} (by itself {}: {})", s.links[k].link.confirmed, to_string(r.verdict), r.reason);
+      r.verdict = Verdict::accepted;
+      m.measurement.accepted = true;
+      m.measurement.log_odds = clipped_log_odds(s.links[k].link.confirmed_probability);
+      s.links[k].probability = s.links[k].link.confirmed_probability;
     }
     m.measurement.link = static_cast<int>(k);
     m.measurement.source = source->second;

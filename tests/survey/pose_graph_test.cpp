@@ -417,6 +417,22 @@ TEST(Solve, FramesOfTheScansDoNotMatter) {
   }
 }
 
+TEST(Solve, AConfirmedAmbiguousLinkJoinsAndARefutedOneDoesNot) {
+  World world(3);
+  world.exact(1, 0);
+  Link& join = world.exact(2, 1, 0.4, Verdict::ambiguous);
+  EXPECT_EQ(solve(world.graph, {}).components.size(), 2u);
+  join.confirmed = "three pairs meet", join.confirmed_probability = 0.99;
+  const Solution joined = solve(world.graph, {});
+  EXPECT_EQ(joined.components.size(), 1u);
+  const SolvedLink* link = find_link(joined, 2, 1);
+  EXPECT_EQ(link->measured, Verdict::ambiguous);
+  EXPECT_EQ(link->link.result.reason, "three pairs meet (by itself ambiguous: as made)");
+  EXPECT_EQ(link->probability, 0.99);
+  join.refuted = "it stands in the air";
+  EXPECT_EQ(solve(world.graph, {}).components.size(), 2u);
+}
+
 TEST(Solve, BelievedLinksWeighByWhatTheyKnow) {
   World world(3);
   world.exact(1, 0), world.exact(2, 1);

@@ -31,7 +31,7 @@ asan() {
   local targets=(test_io store_test pipelines_test determinism_test kill_test end_to_end_test) target failed=0
   cmake --preset asan && cmake --build --preset asan --target "${targets[@]}" || return 1
   for target in "${targets[@]}"; do
-    ISTHMUS_KILLS=2 UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 "build/asan/bin/$target" || failed=1
+    ISTHMUS_KILLS=2 UBSAN_OPTIONS="halt_on_error=1:print_stacktrace=1:suppressions=$PWD/tests/ubsan.supp" "build/asan/bin/$target" || failed=1
   done
   return $failed
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 #include <tuple>
@@ -43,13 +44,12 @@ std::string name_of(std::span<const OutlinedScan> scans, int id) {
   return at != scans.end() && at->id == id && !at->name.empty() ? at->name : std::to_string(id);
 }
 
-std::string text_of(const Testimony& said, const PosedPair& clearest, const PoseCheck& check,
-                    std::span<const OutlinedScan> scans) {
+std::string text_of(const Testimony& said, std::span<const OutlinedScan> scans) {
   return fmt::format(
       "with it {} of {} pairs across it would stand where the other saw through, {} and {} with {:.0f} % of their "
       "points",
-      said.num_forbidden, said.num_telling, name_of(scans, clearest.source), name_of(scans, clearest.target),
-      100 * check.contradiction);
+      said.num_forbidden, said.num_telling, name_of(scans, said.clearest.source), name_of(scans, said.clearest.target),
+      100 * said.clearest_contradiction);
 }
 
 }  // namespace
@@ -92,8 +92,7 @@ std::vector<RefutedLink> refuted_bridge(const Solution& solution, std::span<cons
   }
   if (accused == nullptr) return {};
   const Link& wrong = accused->link->link;
-  std::vector<RefutedLink> refuted{
-      {wrong.source, wrong.target, text_of(worst, pairs[worst.clearest], *checks[worst.clearest], scans)}};
+  std::vector<RefutedLink> refuted{{wrong.source, wrong.target, text_of(worst, scans)}};
   for (const SolvedLink& l : solution.links) {
     if (!believed(l) || &l == accused->link) continue;
     if (!accused->sides.separate(l.link.source, l.link.target)) continue;
@@ -106,26 +105,14 @@ std::vector<RefutedLink> refuted_bridge(const Solution& solution, std::span<cons
 
 std::vector<RefutedLink> refuted_joins(std::span<const PartJoin> joins, std::span<const OutlinedScan> scans,
                                        const PoseChecker& check) {
-  std::vector<PosedPair> pairs;
-  std::vector<std::size_t> begin;  // of each join's pairs
-  for (const PartJoin& join : joins) {
-    begin.push_back(pairs.size());
-    // One that free space forbids has no vote: nothing is lost by it.
-    if (forbidden_by_free_space(join.link->link.result)) continue;
-    for (const GuidedPair& pair : first_witnesses(join.across)) pairs.push_back(posed(pair));
-  }
-  begin.push_back(pairs.size());
-  if (pairs.empty()) return {};
-  const std::vector<std::optional<PoseCheck>> checks = check(pairs);
+  std::vector<PartJoin> asked;  // one that free space forbids has no vote: nothing is lost by it
+  std::ranges::copy_if(joins, std::back_inserter(asked),
+                       [](const PartJoin& join) { return !forbidden_by_free_space(join.link->link.result); });
+  const std::vector<Testimony> said = testimonies_of(asked, check);
   std::vector<RefutedLink> refuted;
-  for (std::size_t k = 0; k < joins.size(); ++k) {
-    const auto own_pairs = std::span(pairs).subspan(begin[k], begin[k + 1] - begin[k]);
-    const auto own_checks = std::span(checks).subspan(begin[k], own_pairs.size());
-    const Testimony said = testimony_of(own_pairs, own_checks, [](const PosedPair&) { return true; });
-    if (!said.refutes()) continue;
-    const Link& link = joins[k].link->link;
-    refuted.push_back(
-        {link.source, link.target, text_of(said, own_pairs[said.clearest], *own_checks[said.clearest], scans)});
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    const Link& link = asked[k].link->link;
+    if (said[k].refutes()) refuted.push_back({link.source, link.target, text_of(said[k], scans)});
   }
   return refuted;
 }

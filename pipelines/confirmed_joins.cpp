@@ -23,26 +23,6 @@ double odds_of_witnesses(std::size_t count) {
   return count == 0 ? 1 : kOddsOfFirst * std::pow(kOddsOfMore, static_cast<double>(count - 1));
 }
 
-/// What the pairs across each of some joins say.
-std::vector<Testimony> testimonies_of(std::span<const PartJoin> joins, const PoseChecker& check) {
-  std::vector<PosedPair> pairs;
-  std::vector<std::size_t> begin;
-  for (const PartJoin& join : joins) {
-    begin.push_back(pairs.size());
-    for (const GuidedPair& pair : first_witnesses(join.across)) pairs.push_back(posed(pair));
-  }
-  begin.push_back(pairs.size());
-  if (pairs.empty()) return std::vector<Testimony>(joins.size());
-  const std::vector<std::optional<PoseCheck>> checks = check(pairs);
-  std::vector<Testimony> said;
-  for (std::size_t k = 0; k < joins.size(); ++k) {
-    const std::size_t count = begin[k + 1] - begin[k];
-    said.push_back(testimony_of(std::span(pairs).subspan(begin[k], count), std::span(checks).subspan(begin[k], count),
-                                [](const PosedPair&) { return true; }));
-  }
-  return said;
-}
-
 struct Candidate {
   const PartJoin* join = nullptr;
   std::pair<int, int> parts;        ///< smaller number first
@@ -94,9 +74,8 @@ bool agree(const Candidate& a, const Candidate& b, double voxel_m) {
 
 std::string text_of(const Candidate& candidate) {
   return fmt::format(
-      "laid onto each other as it says, {} more pairs of scans of the two parts meet and none stands where the other "
-      "saw "
-      "through",
+      "laid onto each other as it says, {} more pairs of scans of the two parts meet and none stands where "
+      "the other saw through",
       candidate.num_witnesses);
 }
 

@@ -27,7 +27,27 @@ Testimony testimony_of(std::span<const PosedPair> pairs, std::span<const std::op
     ++said.num_telling;
     said.num_meeting += !forbidden && checks[k]->support >= kMeetingSupport;
     if (!forbidden) continue;
-    if (said.num_forbidden++ == 0 || checks[k]->contradiction > checks[said.clearest]->contradiction) said.clearest = k;
+    if (said.num_forbidden++ == 0 || checks[k]->contradiction > said.clearest_contradiction)
+      said.clearest = pairs[k], said.clearest_contradiction = checks[k]->contradiction;
+  }
+  return said;
+}
+
+std::vector<Testimony> testimonies_of(std::span<const PartJoin> joins, const PoseChecker& check) {
+  std::vector<Testimony> said(joins.size());
+  std::vector<PosedPair> pairs;
+  std::vector<std::size_t> begin;  // of each join's pairs
+  for (const PartJoin& join : joins) {
+    begin.push_back(pairs.size());
+    for (const GuidedPair& pair : first_witnesses(join.across)) pairs.push_back(posed(pair));
+  }
+  begin.push_back(pairs.size());
+  if (pairs.empty()) return said;
+  const std::vector<std::optional<PoseCheck>> checks = check(pairs);
+  for (std::size_t k = 0; k < joins.size(); ++k) {
+    const std::size_t count = begin[k + 1] - begin[k];
+    said[k] = testimony_of(std::span(pairs).subspan(begin[k], count), std::span(checks).subspan(begin[k], count),
+                           [](const PosedPair&) { return true; });
   }
   return said;
 }

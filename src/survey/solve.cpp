@@ -38,7 +38,6 @@ struct Solver {
   std::vector<Measurement> measurements;  // of links measured accepted or ambiguous
   std::vector<int> tree;                  // measurements that most loops agree with, ascending
   std::vector<Transform> root_from_node;  // solved, centred frames
-  std::vector<Measurement> weighed;       // the accepted ones as they weigh in the end; from weigh_by_precision()
   std::vector<char> undecided;            // per measurement: rejected with others, any of which may be the wrong one
   std::vector<char> doubted;              // per measurement: rejected because no loop could judge it
   std::vector<std::string> warnings;
@@ -97,8 +96,13 @@ Matrix6d information_in_local(const Measurement& m, const GraphScan& source) {
   return whitened.transpose() * whitened;
 }
 
+/// Why others accept a link, and what the pair stage said of it.
+std::string reason_beside_its_own(const std::string& why, Verdict measured, const std::string& own) {
+  return fmt::format("{} (by itself {}: {})", why, to_string(measured), own);
+}
+
 Solver prepared(const PoseGraph& graph, const SolveOptions& options) {
-  Solver s{options, graph.voxel_m, graph.scans, {}, {}, {}, {}, {}, {}, {}, {}, true, {}};
+  Solver s{options, graph.voxel_m, graph.scans, {}, {}, {}, {}, {}, {}, {}, true, {}};
   std::sort(s.scans.begin(), s.scans.end(), [](const GraphScan& a, const GraphScan& b) { return a.id < b.id; });
   std::map<int, int> node_of_id;
   for (int i = 0; i < s.num_nodes(); ++i) node_of_id.emplace(s.scans[i].id, i);
@@ -119,7 +123,6 @@ Solver prepared(const PoseGraph& graph, const SolveOptions& options) {
     }
     if (r.verdict != Verdict::accepted && r.verdict != Verdict::ambiguous) continue;
     if (r.verdict == Verdict::ambiguous && !r.target_from_source) continue;
-    const bool confirmed = r.verdict == Verdict::ambiguous && !s.links[k].link.confirmed.empty();
     const auto source = node_of_id.find(s.links[k].link.source), target = node_of_id.find(s.links[k].link.target);
     MeasurementOrReason m;
     if (source == node_of_id.end() || target == node_of_id.end() || source == target)
@@ -132,8 +135,8 @@ Solver prepared(const PoseGraph& graph, const SolveOptions& options) {
       r.reason = "the link cannot be used: " + m.reason;
       continue;
     }
-    if (confirmed) {
-      r.reason = fmt::format("{} (by itself {}: {})", s.links[k].link.confirmed, to_string(r.verdict), r.reason);
+    if (r.verdict == Verdict::ambiguous && !s.links[k].link.confirmed.empty()) {
+      r.reason = reason_beside_its_own(s.links[k].link.confirmed, r.verdict, r.reason);
       r.verdict = Verdict::accepted;
       m.measurement.accepted = true;
       m.measurement.log_odds = clipped_log_odds(s.links[k].link.confirmed_probability);
@@ -159,8 +162,8 @@ std::string list_of_links(const Solver& s, const std::vector<int>& edges) {
 }
 
 void promote(Solver& s, int e, const std::string& why) {
-  s.judge(e, Verdict::accepted,
-          fmt::format("{} (by itself {}: {})", why, to_string(s.link_of(e).measured), s.link_of(e).link.result.reason));
+  const SolvedLink& link = s.link_of(e);
+  s.judge(e, Verdict::accepted, reason_beside_its_own(why, link.measured, link.link.result.reason));
 }
 
 void let_links_judge_each_other(Solver& s) {
@@ -412,13 +415,13 @@ void solve_links(Solver& s) {
 /// wide noise floor, which makes all nearly equal: good for judging, wasteful for placing.
 void weigh_by_precision(Solver& s) {
   const SpanningForest forest = forest_of(s.num_nodes(), s.measurements, spanning(s));
-  s.weighed.clear();
-  for (const int e : s.with_verdict(Verdict::accepted)) s.weighed.push_back(s.measurements[e]);
-  const OptimisedPoses solved = optimise_by_precision(s.root_from_node, s.weighed, values_of(anchors_of(s, forest)));
+  std::vector<Measurement> believed;
+  for (const int e : s.with_verdict(Verdict::accepted)) believed.push_back(s.measurements[e]);
+  const OptimisedPoses solved = optimise_by_precision(s.root_from_node, believed, values_of(anchors_of(s, forest)));
   s.root_from_node = solved.root_from_node;
   if (!solved.problem.empty()) s.warnings.push_back("pose optimisation: " + solved.problem);
-  for (std::size_t k = 0; k < s.weighed.size(); ++k) {
-    Measurement& m = s.weighed[k];
+  for (std::size_t k = 0; k < believed.size(); ++k) {
+    Measurement& m = believed[k];
     m.sqrt_information = std::sqrt(solved.weights[k]) * m.own_sqrt_information;
     s.links[m.link].information_used = information_in_local(m, s.scans[m.source]);
   }

@@ -81,9 +81,11 @@ Vector6d disagreement(const Transform& measured, const Transform& predicted) {
   return d;
 }
 
-bool is_tight(const Vector6d& d, const Measurement& m) {
-  return d.head<3>().norm() <= kTightFloors * m.floor_m && d.tail<3>().norm() <= kTightFloors * m.floor_rad;
+double floors_of(const Vector6d& d, const Measurement& m) {
+  return std::max(d.head<3>().norm() / m.floor_m, d.tail<3>().norm() / m.floor_rad);
 }
+
+bool is_tight(const Vector6d& d, const Measurement& m) { return floors_of(d, m) <= kTightFloors; }
 
 double chi2_of(const Vector6d& d, const Matrix6d& covariance) { return d.dot(covariance.ldlt().solve(d)); }
 

@@ -44,7 +44,10 @@ Relative inverse(const Relative& b_from_a);
 /// Translation and rotation vector of measured^-1 * predicted: the right perturbation that turns one into the other.
 Vector6d disagreement(const Transform& measured, const Transform& predicted);
 
-/// Whether d is so small that agreement is evidence, whatever the uncertainties: within eight noise floors (four voxels
+/// The larger of d's translation and rotation in noise floors, at the centre of the measurement's source.
+double floors_of(const Vector6d& d, const Measurement& m);
+
+/// Whether d is so small that agreement is evidence, whatever the uncertainties: within four noise floors (two voxels
 /// by default) at the centre of the measurement's source and, for the rotation, at the scan's radius.
 bool is_tight(const Vector6d& d, const Measurement& m);
 

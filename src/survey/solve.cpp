@@ -440,7 +440,7 @@ int loosest_promoted(const Solver& s) {
     if (!in_loop[e] || s.links[m.link].measured == Verdict::accepted) continue;
     const Vector6d d =
         disagreement(m.target_from_source.b_from_a, s.root_from_node[m.target].inverse() * s.root_from_node[m.source]);
-    const double floors = std::max(d.head<3>().norm() / m.floor_m, d.tail<3>().norm() / m.floor_rad);
+    const double floors = floors_of(d, m);
     if (floors > most) most = floors, loosest = e;
   }
   return loosest;

@@ -20,8 +20,12 @@ constexpr double kOddsOfFirst = 8, kOddsOfMore = 2;
 constexpr std::size_t kMostWitnesses = 5;  // that count
 
 double odds_of_witnesses(std::size_t count) {
-  return count == 0 ? 1 : kOddsOfFirst * std::pow(kOddsOfMore, static_cast<double>(count - 1));
+  if (count == 0) return 1;
+  return kOddsOfFirst * std::pow(kOddsOfMore, static_cast<double>(std::min(count, kMostWitnesses) - 1));
 }
+
+/// Pairs that speak for a join: none where any is forbidden.
+std::size_t witnesses_for(const Testimony& said) { return said.num_forbidden > 0 ? 0 : said.num_meeting; }
 
 struct Candidate {
   const PartJoin* join = nullptr;
@@ -47,8 +51,7 @@ Candidate candidate_of(const PartJoin& join, const Testimony& said, const Soluti
     first = target;
   }
   candidate.middle_of_first = first->component_from_local * summaries.at(first->id)->centre;
-  const bool open = said.num_forbidden > 0 || link.result.probability < kLeastProbability;
-  candidate.num_witnesses = open ? 0 : std::min(said.num_meeting, kMostWitnesses);
+  candidate.num_witnesses = witnesses_for(said);
   candidate.probability = link.result.probability;
   return candidate;
 }
@@ -62,6 +65,15 @@ double standing_rival(const PartJoin& join, std::span<const Testimony> of_rivals
   for (std::size_t k = 0; k < of_rivals.size(); ++k)
     if (!of_rivals[k].refutes()) score = std::max(score, result.rivals[k].score);
   return score;
+}
+
+/// Most witnesses of a rival that may stand: what they see of the other part fits there as well, so that as many of the
+/// link's own say nothing.
+std::size_t witnesses_for_a_rival(std::span<const Testimony> of_rivals) {
+  std::size_t most = 0;
+  for (const Testimony& said : of_rivals)
+    if (!said.refutes()) most = std::max(most, witnesses_for(said));
+  return most;
 }
 
 /// Whether two links lay the parts onto each other alike.
@@ -106,7 +118,9 @@ std::vector<ConfirmedLink> confirmed_joins(std::span<const PartJoin> joins, cons
     const auto own = std::span(of_rivals).subspan(next_rival, result.rivals.size());
     next_rival += result.rivals.size();
     const double p = probability_against(result, standing_rival(*c.join, own));
-    const double odds = p / std::max(1 - p, 1e-9) * odds_of_witnesses(c.num_witnesses);
+    const std::size_t for_a_rival = witnesses_for_a_rival(own);
+    const std::size_t beyond = c.num_witnesses > for_a_rival ? c.num_witnesses - for_a_rival : 0;
+    const double odds = p / std::max(1 - p, 1e-9) * odds_of_witnesses(beyond);
     c.probability = std::max(c.probability, odds / (1 + odds));
   }
   std::map<std::pair<int, int>, const Candidate*> best;

@@ -22,9 +22,9 @@ struct ConfirmedLink {
 };
 
 /// Of joins that are not refuted those whose probability reaches `accept_probability`, given what the pairs across them
-/// say: a rival that its own pairs across refute no longer stands against the link, and pairs that meet and
-/// contradict nothing raise its odds. At most one for each two components, the most probable, and
-/// none where two probable links between them disagree.
+/// say: a rival that its own pairs across refute no longer stands against the link, and pairs that meet and contradict
+/// nothing raise its odds, as far as they are more than those of a rival that may stand. At most one for each two
+/// components, the most probable, and none where two probable links between them disagree.
 std::vector<ConfirmedLink> confirmed_joins(std::span<const PartJoin> joins, const Solution& solution,
                                            std::span<const OutlinedScan> scans, const PoseChecker& check,
                                            double accept_probability);

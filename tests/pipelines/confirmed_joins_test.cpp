@@ -58,7 +58,11 @@ TEST(ConfirmedJoins, PartsThatMeetWhereOnlyTheRivalIsForbiddenConfirmTheLink) {
 }
 
 TEST(ConfirmedJoins, ARivalThatMayStandAsWellKeepsTheLinkOpen) {
-  EXPECT_TRUE(TwoParts(0.05).confirmed(answering(kFine, kFine)).empty());
+  EXPECT_TRUE(TwoParts().confirmed(answering(kFine, kFine)).empty());
+}
+
+TEST(ConfirmedJoins, BelowALeastProbabilityNothingIsConfirmed) {
+  EXPECT_TRUE(TwoParts(0.1).confirmed(answering(kFine, kForbidden)).empty());
 }
 
 TEST(ConfirmedJoins, OnePairInSeenThroughSpaceIsEnoughToKeepItOpen) {

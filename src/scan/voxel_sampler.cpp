@@ -313,7 +313,8 @@ std::vector<std::uint32_t> fill(SurfacePoints& out, const std::vector<Voxel>& vo
 }
 
 // Twigs and leaves fill voxels that sight lines pass: what blocks nearly half of the lines at the voxel may let them
-// through at half of it. There the station is believed only if from all places around it more is hidden.
+// through at half of it. There the station is believed only if from all six places around it more is hidden, and
+// clearly more from five: a gap among the trunks lies anywhere.
 double blocked_finely(const std::vector<Voxel>& fine, double fine_voxel_m, const Eigen::Vector3f& station,
                       const StationCheck& coarse) {
   constexpr float kAway = 0.2f;  // of the median range
@@ -321,14 +322,18 @@ double blocked_finely(const std::vector<Voxel>& fine, double fine_voxel_m, const
   SurfacePoints surface;
   fill(surface, fine, fine_voxel_m);
   const SightLines lines(surface.points, surface.normals, static_cast<float>(fine_voxel_m));
+  constexpr int kPlaces = 6;
   const double here = lines.from(station).blocked;
+  int clearly = 0;
   for (int axis = 0; axis < 3; ++axis)
     for (const float sign : {1.0f, -1.0f}) {
       const Eigen::Vector3f away =
           sign * kAway * static_cast<float>(coarse.median_range_m) * Eigen::Vector3f::Unit(axis);
-      if (here > kMuchLess * lines.from(station + away).blocked) return coarse.blocked;
+      const double there = lines.from(station + away).blocked;
+      if (here > there) return coarse.blocked;
+      clearly += here <= kMuchLess * there;
     }
-  return here;
+  return clearly >= kPlaces - 1 ? here : coarse.blocked;
 }
 
 std::uint32_t median_count(const std::vector<Voxel>& voxels) {

@@ -72,7 +72,16 @@ void mark_upright(const FreeSpace& image, DominantAxis& axis) {
   const View view = view_about(image, axis.direction);
   axis.upright = view.looks_round() && (view.blind_along() || view.blind_against());
   if (!axis.upright || view.blind_along() == view.blind_against()) return;  // both: the normals' sign is all there is
-  if (view.blind_along()) axis.direction = -axis.direction;
+  // The blind end is the tripod's, or the sky. Where nothing lies over the station the planes across the axis face up.
+  constexpr float kNothingAbove = 0.95f, kMostlyOneWay = 0.5f;
+  if (view.blind_along()) {
+    if (axis.sign_agreement >= kNothingAbove) return;
+    axis.direction = -axis.direction;
+    if (axis.sign_agreement >= kMostlyOneWay) {
+      axis.sign_agreement = 0;  // floors face the one end, the tripod's shadow lies at the other: either may be up
+      return;
+    }
+  }
   axis.sign_agreement = 1;
 }
 

@@ -78,6 +78,31 @@ TEST(Upright, OpenSkyLeavesTheSignToTheGround) {
   EXPECT_GT(axes[0].direction.dot(any_turn() * Eigen::Vector3f::UnitZ()), 0.999f);
 }
 
+TEST(Upright, TheSkyIsNoTripodWhereNothingLiesAbove) {
+  const auto axes = axes_of(room(any_turn(), 0.0f, false));  // sees the ground below itself, nothing above
+  ASSERT_FALSE(axes.empty());
+  EXPECT_TRUE(axes[0].upright);
+  EXPECT_GT(axes[0].sign_agreement, 0.9f);
+  EXPECT_GT(axes[0].direction.dot(any_turn() * Eigen::Vector3f::UnitZ()), 0.999f);
+}
+
+TEST(Upright, ACeilingWithoutAFloorLeavesTheSignOpen) {
+  SampledScan scan = room(any_turn(), 0.5f, true);
+  std::size_t floor = 0, kept = 0;  // a seventh of the floor stays in sight, the tripod's shadow where it was
+  const Eigen::Vector3f up = any_turn() * Eigen::Vector3f::UnitZ();
+  constexpr std::size_t kKeptOf = 7;
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    if (scan.normals[i].dot(up) > 0.9f && ++floor % kKeptOf != 0) continue;
+    scan.points[kept] = scan.points[i], scan.normals[kept] = scan.normals[i], ++kept;
+  }
+  scan.points.resize(kept), scan.normals.resize(kept), scan.variation.resize(kept);
+  const auto axes = axes_of(scan);
+  ASSERT_FALSE(axes.empty());
+  EXPECT_TRUE(axes[0].upright);
+  EXPECT_EQ(axes[0].sign_agreement, 0.0f);
+  EXPECT_GT(axes[0].direction.dot(up), 0.999f);
+}
+
 TEST(Upright, WithoutABlindConeTheNearestPlanesGoFirstUnmarked) {
   const auto axes = axes_of(room(any_turn(), 0.0f, true));
   ASSERT_EQ(axes.size(), 3U);

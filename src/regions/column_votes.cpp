@@ -18,15 +18,17 @@ std::size_t stride_for(const ScanModel& model, std::size_t points) {
 std::vector<Seed> vote_seeds_by_columns(const ScanModel& source, const ScanModel& target,
                                         const Eigen::Vector3f& source_axis, const Eigen::Vector3f& target_axis,
                                         const ColumnVoteOptions& options) {
-  constexpr std::size_t kMinColumns = 8, kPeaksPerTurn = 24;
+  constexpr std::size_t kMinColumns = 8, kLeastPeaksPerTurn = 24;
   const Eigen::Matrix3f z_from_source = z_from_axis(source_axis), z_from_target = z_from_axis(target_axis);
   const GroundPlan from = ground_plan(source, z_from_source, options.plan),
                    to = ground_plan(target, z_from_target, options.plan);
   if (from.columns.size() < kMinColumns || to.columns.size() < kMinColumns || source.regions.regions.empty()) return {};
   const float voxel = source.voxel_m, cell = options.plan.cell_voxels * voxel;
   const ShiftVotes votes(from, to, cell);
-  const std::vector<PlanPose> peaks =
-      heaviest_shifts(votes, likely_turns(from, to, options.yaw_step_rad), kPeaksPerTurn, options.max_checked);
+  const std::vector<float> turns = likely_turns(from, to, options.yaw_step_rad);
+  const std::size_t per_turn =
+      std::max(kLeastPeaksPerTurn, options.max_checked / std::max<std::size_t>(1, turns.size()));
+  const std::vector<PlanPose> peaks = heaviest_shifts(votes, turns, per_turn, options.max_checked);
 
   const PlanHeights heights(to, cell);
   std::vector<Pose3f> poses;

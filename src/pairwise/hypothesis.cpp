@@ -99,14 +99,16 @@ double free_space_factor(const Hypothesis& h) {
 
 // Where the vertical of both scans is known, a pose that turns them apart is doubtful: at right poses of seven sets
 // they lay within 1.7 degrees of each other, and nearby tilted poses often explained as much. A doubt, no ban: the
-// vertical of a hillside is that of its surface.
+// vertical of a hillside is that of its surface; and none where the turn is wide: then one of the two is no vertical.
 double upright_factor(const ScanModel& source, const ScanModel& target, const Transform& target_from_source) {
-  constexpr double kFreeDeg = 1, kSigmaDeg = 1.5, kLeast = 0.05;
+  constexpr double kFreeDeg = 1, kSigmaDeg = 1.5, kLeast = 0.05, kNoVerticalDeg = 15;
   const std::vector<DominantAxis>&from = source.features.axes, &to = target.features.axes;
   if (from.empty() || to.empty() || !from.front().upright || !to.front().upright) return 1;
   const Eigen::Vector3d turned = target_from_source.linear() * from.front().direction.cast<double>();
   const double cosine = std::min(1.0, std::abs(turned.dot(to.front().direction.cast<double>())));
-  const double beyond = std::max(0.0, std::acos(cosine) * 180 / std::numbers::pi - kFreeDeg) / kSigmaDeg;
+  const double tilt_deg = std::acos(cosine) * 180 / std::numbers::pi;
+  if (tilt_deg > kNoVerticalDeg) return 1;
+  const double beyond = std::max(0.0, tilt_deg - kFreeDeg) / kSigmaDeg;
   return std::max(kLeast, std::exp(-0.5 * beyond * beyond));
 }
 

@@ -121,7 +121,7 @@ TEST(Weigh, VerticalsThatLieApartAreADoubtNotABan) {
   HallPair pair;
   const Transform& truth = pair.data.target_from_source;
   const Transform tilted = truth * pose_of({0, 0, 0}, {0, 4 * std::numbers::pi / 180, 0}),
-                  far_off = truth * pose_of({0, 0, 0}, {0, 0.7, 0});
+                  far_off = truth * pose_of({0, 0, 0}, {0, 0.2, 0}), wide = truth * pose_of({0, 0, 0}, {0, 0.7, 0});
   const auto mark = [&pair](bool source, bool target) {
     DominantAxis axis;
     axis.direction = Eigen::Vector3f::UnitZ();
@@ -130,9 +130,10 @@ TEST(Weigh, VerticalsThatLieApartAreADoubtNotABan) {
   };
   mark(false, false);
   const double free_truth = score_of(pair, truth), free_tilted = score_of(pair, tilted),
-               free_far = score_of(pair, far_off);
+               free_far = score_of(pair, far_off), free_wide = score_of(pair, wide);
   ASSERT_GT(free_tilted, 0);
   ASSERT_GT(free_far, 0);
+  ASSERT_GT(free_wide, 0);
   for (const bool source : {true, false}) {
     mark(source, !source);  // one alone says nothing
     EXPECT_EQ(score_of(pair, tilted), free_tilted);
@@ -141,6 +142,7 @@ TEST(Weigh, VerticalsThatLieApartAreADoubtNotABan) {
   EXPECT_EQ(score_of(pair, truth), free_truth);
   EXPECT_NEAR(score_of(pair, tilted) / free_tilted, std::exp(-2.0), 1e-6) << "3 degrees beyond 1, in units of 1.5";
   EXPECT_NEAR(score_of(pair, far_off) / free_far, 0.05, 1e-9);
+  EXPECT_EQ(score_of(pair, wide), free_wide) << "one of the two is no vertical";
 }
 
 TEST(Climb, ReachesTheTruthFromAVoxelAwayAndNeverEndsLower) {

@@ -533,8 +533,10 @@ PairResult register_pair(const ScanProduct& source_product, const ScanProduct& t
     return result;
   }
   Stopwatch watch(result.seconds_by_stage);
-  const ScanModel source(source_product.sampled, source_product.features, source_product.regions, ModelLevel::coarse);
-  const ScanModel target(target_product.sampled, target_product.features, target_product.regions, ModelLevel::coarse);
+  const ScanModel source(source_product.sampled, source_product.features, source_product.regions, ModelLevel::coarse,
+                         &source_product.uprights);
+  const ScanModel target(target_product.sampled, target_product.features, target_product.regions, ModelLevel::coarse,
+                         &target_product.uprights);
   watch.lap("lookups");
 
   PairSearch search(source, target, options, watch, result.counts, trace);

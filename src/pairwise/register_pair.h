@@ -11,6 +11,7 @@
 #include "features/feature_cloud.h"
 #include "pairwise/pair_result.h"
 #include "regions/region_map.h"
+#include "regions/upright_memo.h"
 #include "scan/sampled_scan.h"
 
 namespace isthmus {
@@ -20,6 +21,7 @@ struct ScanProduct {
   SampledScan sampled;
   FeatureCloud features;
   RegionMap regions;
+  mutable UprightMemo uprights;  ///< for as long as the product is in memory
   template <class F>
   void fields(F&& f) {
     f(sampled), f(features), f(regions);

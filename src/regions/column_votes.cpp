@@ -20,8 +20,9 @@ std::vector<Seed> vote_seeds_by_columns(const ScanModel& source, const ScanModel
                                         const ColumnVoteOptions& options) {
   constexpr std::size_t kMinColumns = 8, kLeastPeaksPerTurn = 24;
   const Eigen::Matrix3f z_from_source = z_from_axis(source_axis), z_from_target = z_from_axis(target_axis);
-  const GroundPlan from = ground_plan(source, z_from_source, options.plan),
-                   to = ground_plan(target, z_from_target, options.plan);
+  const auto from_plan = ground_plan(source, z_from_source, options.plan),
+             to_plan = ground_plan(target, z_from_target, options.plan);
+  const GroundPlan &from = *from_plan, &to = *to_plan;
   if (from.columns.size() < kMinColumns || to.columns.size() < kMinColumns || source.regions.regions.empty()) return {};
   const float voxel = source.voxel_m, cell = options.plan.cell_voxels * voxel;
   const ShiftVotes votes(from, to, cell);

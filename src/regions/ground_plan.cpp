@@ -5,6 +5,8 @@
 #include <limits>
 #include <map>
 
+#include "regions/upright_memo.h"
+
 namespace isthmus {
 namespace {
 
@@ -37,7 +39,9 @@ Eigen::Matrix3f z_from_axis(const Eigen::Vector3f& axis) {
   return Eigen::Quaternionf::FromTwoVectors(axis, Eigen::Vector3f::UnitZ()).toRotationMatrix();
 }
 
-GroundPlan ground_plan(const ScanModel& model, const Eigen::Matrix3f& z_from_scan, const GroundPlanOptions& options) {
+namespace {
+
+GroundPlan made_plan(const ScanModel& model, const Eigen::Matrix3f& z_from_scan, const GroundPlanOptions& options) {
   const float voxel = model.voxel_m, cell = options.cell_voxels * voxel;
   struct Pile {
     Eigen::Vector2f sum = Eigen::Vector2f::Zero(), facing = Eigen::Vector2f::Zero();
@@ -80,6 +84,13 @@ GroundPlan ground_plan(const ScanModel& model, const Eigen::Matrix3f& z_from_sca
   const std::size_t stride = std::max<std::size_t>(1, levels.size() / kMaxLevels);
   for (std::size_t i = 0; i < levels.size(); i += stride) plan.levels.push_back(levels[i]);
   return plan;
+}
+
+}  // namespace
+
+std::shared_ptr<const GroundPlan> ground_plan(const ScanModel& model, const Eigen::Matrix3f& z_from_scan,
+                                              const GroundPlanOptions& options) {
+  return model.uprights().plan(z_from_scan, options, [&] { return made_plan(model, z_from_scan, options); });
 }
 
 PlanHeights::PlanHeights(const GroundPlan& plan, float cell_m) : cell_m_(cell_m) {

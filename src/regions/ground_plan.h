@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <numbers>
 #include <unordered_map>
 #include <vector>
@@ -48,8 +49,9 @@ struct GroundPlanOptions {
 /// Turns a scan's local frame so that `axis` (unit) is z.
 Eigen::Matrix3f z_from_axis(const Eigen::Vector3f& axis);
 
-/// Deterministic, in the order of cells.
-GroundPlan ground_plan(const ScanModel& model, const Eigen::Matrix3f& z_from_scan, const GroundPlanOptions& options);
+/// Deterministic, in the order of cells. The model remembers it (UprightMemo).
+std::shared_ptr<const GroundPlan> ground_plan(const ScanModel& model, const Eigen::Matrix3f& z_from_scan,
+                                              const GroundPlanOptions& options);
 
 /// How one plan lies on another: p_target = turn by `yaw` * p_source + shift.
 struct PlanPose {

@@ -2,12 +2,18 @@
 
 #include <algorithm>
 
+#include "regions/upright_memo.h"
 #include "scan/free_space.h"
 
 namespace isthmus {
 
-ScanModel::ScanModel(const SampledScan& sampled, const FeatureCloud& cloud, const RegionMap& map, ModelLevel level)
-    : scan(sampled), features(cloud), regions(map) {
+ScanModel::ScanModel(const SampledScan& sampled, const FeatureCloud& cloud, const RegionMap& map, ModelLevel level,
+                     UprightMemo* shared)
+    : scan(sampled),
+      features(cloud),
+      regions(map),
+      own_(shared ? nullptr : std::make_unique<UprightMemo>()),
+      uprights_(shared ? shared : own_.get()) {
   const bool use_fine = level == ModelLevel::fine && !sampled.fine.points.empty();
   voxel_m = static_cast<float>(use_fine ? sampled.fine.voxel_m : sampled.voxel_m);
   points = use_fine ? sampled.fine.points : sampled.points;
@@ -25,6 +31,8 @@ ScanModel::ScanModel(const SampledScan& sampled, const FeatureCloud& cloud, cons
   std::nth_element(distance.begin(), distance.begin() + k, distance.end());
   extent_m = distance[static_cast<std::size_t>(k)];
 }
+
+ScanModel::~ScanModel() = default;
 
 bool ScanModel::seen_through(const Eigen::Vector3f& p, float tolerance_m) const {
   constexpr float kRelativeTolerance = 0.02f;

@@ -1,6 +1,7 @@
 // What a pair needs to ask of a scan thousands of times: is there a surface here, was this place seen through?
 #pragma once
 
+#include <memory>
 #include <span>
 
 #include "features/feature_cloud.h"
@@ -10,6 +11,8 @@
 
 namespace isthmus {
 
+class UprightMemo;
+
 enum class ModelLevel : std::uint8_t {
   coarse,  ///< the scan's voxels: features, regions, growth
   fine,    ///< the finer sampling, or the coarse one where there is none: last alignment and evidence
@@ -18,7 +21,12 @@ enum class ModelLevel : std::uint8_t {
 /// Lookups built once per scan and pair session; keeps references to the scan's products.
 class ScanModel {
  public:
-  ScanModel(const SampledScan& scan, const FeatureCloud& features, const RegionMap& regions, ModelLevel level);
+  /// `shared`: what the scan's other models have found upright; by default the model remembers for itself.
+  ScanModel(const SampledScan& scan, const FeatureCloud& features, const RegionMap& regions, ModelLevel level,
+            UprightMemo* shared = nullptr);
+  ~ScanModel();
+  ScanModel(const ScanModel&) = delete;
+  ScanModel& operator=(const ScanModel&) = delete;
 
   const SampledScan& scan;
   const FeatureCloud& features;
@@ -34,6 +42,13 @@ class ScanModel {
   /// True where the station looked through `p` (local frame): p lies in front of everything seen in its direction, by
   /// more than tolerance_m plus 2 % of the range.
   [[nodiscard]] bool seen_through(const Eigen::Vector3f& p, float tolerance_m) const;
+
+  /// Stems and ground plans that were asked for before.
+  [[nodiscard]] UprightMemo& uprights() const { return *uprights_; }
+
+ private:
+  std::unique_ptr<UprightMemo> own_;
+  UprightMemo* uprights_;
 };
 
 }  // namespace isthmus

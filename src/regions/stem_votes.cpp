@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "regions/shift_votes.h"
 #include "regions/stems.h"
+#include "regions/upright_memo.h"
 
 namespace isthmus {
 namespace {
@@ -138,7 +139,8 @@ class StemTarget {
 // The tallest stems, their centres about the scan's centroid.
 std::vector<Stem> tallest_stems(const ScanModel& model, const Eigen::Matrix3f& z_from_scan,
                                 const StemVoteOptions& options) {
-  std::vector<Stem> stems = find_stems(model.scan, z_from_scan, options.min_layers);
+  std::vector<Stem> stems = *model.uprights().stems(
+      z_from_scan, options.min_layers, [&] { return find_stems(model.scan, z_from_scan, options.min_layers); });
   std::stable_sort(stems.begin(), stems.end(), [](const Stem& a, const Stem& b) { return a.layers > b.layers; });
   if (stems.size() > options.max_stems) stems.resize(options.max_stems);
   const Eigen::Vector2f middle = (z_from_scan * model.centroid).head<2>();
@@ -215,13 +217,12 @@ std::vector<Seed> vote_seeds_by_stems(const ScanModel& source, const ScanModel& 
   }
   if (found.empty()) return {};
   const GroundPlanOptions plan;
-  const GroundPlan from_plan = ground_plan(source, z_from_source, plan),
-                   to_plan = ground_plan(target, z_from_target, plan);
-  const PlanHeights heights(to_plan, plan.cell_voxels * source.voxel_m);
+  const auto from_plan = ground_plan(source, z_from_source, plan), to_plan = ground_plan(target, z_from_target, plan);
+  const PlanHeights heights(*to_plan, plan.cell_voxels * source.voxel_m);
   std::vector<Pose3f> poses;
   std::vector<float> score;
   for (const PlanPose& pose : found)
-    for (const float z : heights.shifts(from_plan, pose, source.voxel_m)) {
+    for (const float z : heights.shifts(*from_plan, pose, source.voxel_m)) {
       poses.push_back(pose_of_plan(source, target, z_from_source, z_from_target, pose, z));
       score.push_back(pose.votes);
     }

@@ -10,6 +10,7 @@
 #include "pairwise/threads.h"
 #include "regions/posts.h"
 #include "regions/stem_votes.h"
+#include "regions/upright_memo.h"
 
 namespace isthmus {
 namespace {
@@ -168,6 +169,32 @@ TEST(StemVotes, APlantationOnAGridSettlesNothing) {
   const auto seeds = wood.seeds();
   EXPECT_FALSE(stems_settle(seeds)) << "a step of the grid explains nearly as much";
   EXPECT_GT(seeds.size(), 1u);
+}
+
+TEST(UprightMemo, MakesOnceWhatIsAskedForTwiceAndACopyBeginsAnew) {
+  UprightMemo memo;
+  int made = 0;
+  const auto make = [&made] { return std::vector<Stem>(static_cast<std::size_t>(++made)); };
+  Eigen::Matrix3f turned = kUp;
+  turned.topLeftCorner<2, 2>() = Eigen::Rotation2Df(0.1f).toRotationMatrix();
+  const auto first = memo.stems(kUp, 6, make);
+  EXPECT_EQ(memo.stems(kUp, 6, make), first);
+  EXPECT_EQ(made, 1);
+  EXPECT_EQ(memo.stems(turned, 6, make)->size(), 2U) << "another vertical";
+  EXPECT_EQ(memo.stems(kUp, 5, make)->size(), 3U) << "other options";
+  EXPECT_EQ(memo.stems(kUp, 6, make), first);
+  UprightMemo copy = memo;  // of a scan that may have been changed since
+  EXPECT_EQ(copy.stems(kUp, 6, make)->size(), 4U);
+  copy = memo;
+  EXPECT_EQ(copy.stems(kUp, 6, make)->size(), 5U);
+  EXPECT_EQ(memo.stems(kUp, 6, make), first);
+
+  int plans = 0;
+  const auto plan = [&plans] { return ++plans, GroundPlan{}; };
+  GroundPlanOptions fewer;
+  fewer.max_columns = 250;
+  memo.plan(kUp, {}, plan), memo.plan(kUp, {}, plan), memo.plan(kUp, fewer, plan), memo.plan(turned, {}, plan);
+  EXPECT_EQ(plans, 3);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include <cmath>
+#include <thread>
 
 namespace isthmus::sim {
 
@@ -45,9 +46,14 @@ Result<RayScene> RayScene::build(Mesh mesh) {
     rtcAttachGeometry(state->scene, geometry);
     rtcReleaseGeometry(geometry);
   }
-  tbb::task_arena one_thread(1);
-  one_thread.execute([&] { rtcJoinCommitScene(state->scene); });
-  const RTCError error = rtcGetDeviceError(state->device);
+  // Embree keeps on the stack what its tasks wait for, and its own TBB code is unseen by ThreadSanitizer: on a thread
+  // of its own that stack is not ours again when the last of them still looks at it.
+  RTCError error = rtcGetDeviceError(state->device);  // of this thread so far
+  std::thread([&] {
+    tbb::task_arena one_thread(1);
+    one_thread.execute([&] { rtcJoinCommitScene(state->scene); });
+    if (error == RTC_ERROR_NONE) error = rtcGetDeviceError(state->device);
+  }).join();
   if (error != RTC_ERROR_NONE) {
     return fail(fmt::format("Embree error {} while building a scene of {} triangles", static_cast<int>(error),
                             m.triangles.size()),

@@ -21,7 +21,7 @@ enum class ModelLevel : std::uint8_t {
 /// Lookups built once per scan and pair session; keeps references to the scan's products.
 class ScanModel {
  public:
-  /// `shared`: what the scan's other models have found upright; by default the model remembers for itself.
+  /// `shared`: what models of the same scan and level found upright; by default the model remembers for itself.
   ScanModel(const SampledScan& scan, const FeatureCloud& features, const RegionMap& regions, ModelLevel level,
             UprightMemo* shared = nullptr);
   ~ScanModel();

@@ -46,16 +46,19 @@ SurfaceLookup::SurfaceLookup(std::span<const Eigen::Vector3f> points, float cell
   }
   low_ = box.low;
   for (int a = 0; a < 3; ++a) size_[a] = static_cast<std::uint32_t>((box.high[a] - box.low[a]) * inverse_cell_ / 8) + 1;
-  blocks_.assign(static_cast<std::size_t>(size_[0]) * size_[1] * size_[2], -1);
-  std::vector<float> nearest;                  // squared, of each cell
+  end_ = 8 * Eigen::Vector3f(static_cast<float>(size_[0]), static_cast<float>(size_[1]), static_cast<float>(size_[2]));
+  nowhere_ = static_cast<std::size_t>(size_[0]) * size_[1] * size_[2];
+  blocks_.assign(nowhere_ + 1, 0);
+  std::vector<float> nearest(512);             // squared, of each cell
   std::array<std::vector<float>, 3> sq_along;  // of the cells' centres about a point, along each axis
   for (auto& of_axis : sq_along) of_axis.resize(2 * static_cast<std::size_t>(reach_cells) + 1);
   const Eigen::Array3i limit(static_cast<int>(size_[0]) * 8, static_cast<int>(size_[1]) * 8,
                              static_cast<int>(size_[2]) * 8);
   const float reach_m = cell_m * (static_cast<float>(reach_cells) + 0.5f), sq_reach = reach_m * reach_m;
+  const float beyond_reach = std::nextafter(sq_reach, std::numeric_limits<float>::infinity());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3f g = (points[i] - low_) * inverse_cell_;
-    if (!((g.array() >= 0).all()) || !((g.array() < limit.cast<float>()).all())) continue;
+    if (!((g.array() >= 0).all()) || !((g.array() < end_.array()).all())) continue;
     const Eigen::Array3i c = g.array().floor().cast<int>();
     const Eigen::Array3i from = (c - reach_cells).max(0), to = (c + reach_cells).min(limit - 1);
     for (int a = 0; a < 3; ++a)
@@ -69,17 +72,22 @@ SurfaceLookup::SurfaceLookup(std::span<const Eigen::Vector3f> points, float cell
             sq_along[1][static_cast<std::size_t>(y - from[1])] + sq_along[2][static_cast<std::size_t>(z - from[2])];
         if (sq_yz > sq_reach) continue;
         std::int32_t* const row = &blocks_[(static_cast<std::size_t>(z >> 3) * size_[1] + (y >> 3)) * size_[0]];
-        for (int x = from[0]; x <= to[0]; ++x) {
-          const float sq_distance = sq_yz + sq_along[0][static_cast<std::size_t>(x - from[0])];
-          if (sq_distance > sq_reach) continue;
+        for (int x = from[0]; x <= to[0];) {
+          const int end = std::min(to[0], x | 7) + 1;  // of the block
           std::int32_t& block = row[x >> 3];
-          if (block < 0) {
+          if (block == 0) {
             block = static_cast<std::int32_t>(cells_.size() / 512);
             cells_.resize(cells_.size() + 512, -1);
-            nearest.resize(cells_.size(), std::numeric_limits<float>::infinity());
+            nearest.resize(cells_.size(), beyond_reach);
           }
-          const std::size_t k = static_cast<std::size_t>(block) * 512 + ((z & 7) << 6 | (y & 7) << 3 | (x & 7));
-          if (sq_distance < nearest[k]) nearest[k] = sq_distance, cells_[k] = static_cast<std::int32_t>(i);
+          const std::size_t k = static_cast<std::size_t>(block) * 512 + ((z & 7) << 6 | (y & 7) << 3);
+          for (; x < end; ++x) {
+            const float sq_distance = sq_yz + sq_along[0][static_cast<std::size_t>(x - from[0])];
+            float& so_far = nearest[k + static_cast<std::size_t>(x & 7)];
+            if (sq_distance >= so_far) continue;
+            so_far = sq_distance;
+            cells_[k + static_cast<std::size_t>(x & 7)] = static_cast<std::int32_t>(i);
+          }
         }
       }
   }

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "regions/align.h"
+#include "regions/lookups.h"
 
 namespace isthmus {
 namespace {
@@ -28,25 +29,24 @@ float tolerance_m(const ScanModel& model, std::int32_t point) {
 Profile profile(const ScanModel& from, const ScanModel& to, const Transform& to_from,
                 std::span<const std::uint32_t> sample, float widened_m = 0) {
   constexpr float kMinFacing = 0.5f, kFreeToleranceVoxels = 1.5f;
-  const Eigen::Matrix3f rotation = to_from.linear().cast<float>();
-  const Eigen::Vector3f translation = to_from.translation().cast<float>();
+  const Pose3f pose{to_from.linear().cast<float>(), to_from.translation().cast<float>()};
   Profile out;
   out.support.assign(sample.size(), 0.0f);
   std::size_t contradicted = 0, against = 0;
-  for (std::size_t k = 0; k < sample.size(); ++k) {
-    const Eigen::Vector3f p = rotation * from.points[sample[k]] + translation;
-    const std::int32_t j = to.fine.near(p);
-    if (j < 0) {
-      contradicted += to.seen_through(p, kFreeToleranceVoxels * to.voxel_m);
-      continue;
-    }
-    const Eigen::Vector3f& n = to.normals[j];
-    const float facing = n.dot(rotation * from.normals[sample[k]]);
-    if (facing < -kMinFacing) ++against;
-    if (facing < kMinFacing) continue;
-    const float ratio = n.dot(p - to.points[j]) / (tolerance_m(to, j) + widened_m);
-    out.support[k] = std::max(0.0f, 1 - ratio * ratio);
-  }
+  for_each_lookup(
+      from, to, to.fine, pose, sample.size(), [&](std::size_t k) { return sample[k]; },
+      [&](std::size_t k, const Eigen::Vector3f& p, std::int32_t j) {
+        if (j < 0) {
+          contradicted += to.seen_through(p, kFreeToleranceVoxels * to.voxel_m);
+          return;
+        }
+        const Eigen::Vector3f& n = to.normals[j];
+        const float facing = n.dot(pose.rotation * from.normals[sample[k]]);
+        if (facing < -kMinFacing) ++against;
+        if (facing < kMinFacing) return;
+        const float ratio = n.dot(p - to.points[j]) / (tolerance_m(to, j) + widened_m);
+        out.support[k] = std::max(0.0f, 1 - ratio * ratio);
+      });
   const double scale = sample.empty() ? 0.0 : 1.0 / static_cast<double>(sample.size());
   out.contradiction = static_cast<double>(contradicted) * scale;
   out.against = static_cast<double>(against) * scale;
@@ -361,7 +361,7 @@ void weigh(const ScanModel& source, const ScanModel& target, const Weighing& wei
     h.source = summary(h.profiles->forward, from_weight);
     h.target = summary(h.profiles->backward, to_weight);
     h.score = combined_support(h) * (weighing.free_space ? free_space_factor(h) : 1.0) *
-              upright_factor(source, target, h.target_from_source);
+              (weighing.upright ? upright_factor(source, target, h.target_from_source) : 1.0);
   }
   std::stable_sort(hypotheses.begin(), hypotheses.end(),
                    [](const auto& a, const auto& b) { return a.score > b.score; });

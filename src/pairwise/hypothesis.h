@@ -71,6 +71,7 @@ struct Weighing {
   std::size_t max_points = 2000;  ///< of each scan
   bool rarity = true;             ///< false: every point weighs the same
   bool free_space = true;         ///< false: contradictions do not lower the score
+  bool upright = true;            ///< false: verticals that are turned apart do not either
 };
 
 /// Fills the evidence and score of all and sorts them best first. What every hypothesis explains (floors, long walls)

@@ -153,7 +153,7 @@ const config::OptionTable<PairOptions>& pair_options_table() {
            "",
            0,
            0,
-           {"growth", "super4pcs", "fine", "rarity", "free_space"},
+           {"growth", "super4pcs", "fine", "rarity", "free_space", "upright"},
            "Parts of the method left out, for experiments: what does each bring?",
            "docs/bench.md"},
       }};
@@ -235,13 +235,13 @@ std::vector<Hypothesis> grown_hypotheses(const ScanModel& source, const ScanMode
                                          const std::vector<Seed>& seeds, bool with_growth) {
   GrowOptions options;
   if (!with_growth) options.final_steps = 0;
+  const std::vector<GrownOverlap> grown = grow_all(source, target, seeds, options);
   std::vector<Hypothesis> out(seeds.size());
-  parallel_for_index(seeds.size(), 4, [&](std::size_t k) {
-    const GrownOverlap grown = grow(source, target, seeds[k], options);
-    out[k].target_from_source = grown.target_from_source;
-    out[k].score = static_cast<double>(grown.score);
+  for (std::size_t k = 0; k < seeds.size(); ++k) {
+    out[k].target_from_source = grown[k].target_from_source;
+    out[k].score = static_cast<double>(grown[k].score);
     out[k].generator = seeds[k].generator;
-  });
+  }
   return out;
 }
 
@@ -494,7 +494,7 @@ class PairSearch {
   // Weighed, twins dropped, and weighed again: the share that supports a point is among distinct poses.
   void rank(const ScanModel& source, const ScanModel& target, std::vector<Hypothesis>& hypotheses) const {
     const Weighing weighing{static_cast<std::size_t>(options_.score_points), !options_.leaves_out("rarity"),
-                            !options_.leaves_out("free_space")};
+                            !options_.leaves_out("free_space"), !options_.leaves_out("upright")};
     weigh(source, target, weighing, hypotheses);
     const std::size_t before = hypotheses.size();
     keep_distinct(source, 2 * source.scan.voxel_m, hypotheses);

@@ -23,10 +23,8 @@ std::optional<double> screen_pair(const ScanModel& source, const ScanModel& targ
   if (axes.size() > kMaxAxisPairs) axes.resize(kMaxAxisPairs);
   std::optional<double> best;
   const auto look_at = [&](const std::vector<Seed>& seeds) {
-    for (const Seed& seed : seeds) {
-      const auto score = static_cast<double>(grow(source, target, seed, {}).score);
-      best = std::max(best.value_or(score), score);
-    }
+    for (const GrownOverlap& grown : grow_all(source, target, seeds, {}))
+      best = std::max(best.value_or(static_cast<double>(grown.score)), static_cast<double>(grown.score));
   };
   for (const auto& [from, to] : axes) {
     const std::vector<Seed> by_stems = vote_seeds_by_stems(source, target, from, to, stems);

@@ -2,29 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "base/parallel.h"
 #include "regions/align.h"
 
 namespace isthmus {
-namespace {
 
-// Up to `max_points` source indices spread over the scan, nearest to `centre` first.
-std::vector<std::uint32_t> by_distance(const ScanModel& model, const Eigen::Vector3f& centre, std::size_t max_points,
-                                       std::vector<float>& distance) {
-  const std::size_t n = model.points.size(), count = std::min(n, max_points);
-  std::vector<std::pair<float, std::uint32_t>> order(count);
+GrowthOrder growth_order(const ScanModel& source, std::uint32_t region, const GrowOptions& options) {
+  const Eigen::Vector3f& centre = source.regions.regions[region].centre;
+  // Denser near the seed: half of the budget goes to its surroundings.
+  const std::size_t n = source.points.size(), count = std::min(n, 4 * options.max_points);
+  std::vector<std::pair<float, std::uint32_t>> sorted(count);
   for (std::size_t k = 0; k < count; ++k) {
     const auto i = static_cast<std::uint32_t>(k * n / count);
-    order[k] = {(model.points[i] - centre).norm(), i};
+    sorted[k] = {(source.points[i] - centre).norm(), i};
   }
-  std::sort(order.begin(), order.end());
-  std::vector<std::uint32_t> sorted(count);
-  distance.resize(count);
-  for (std::size_t k = 0; k < count; ++k) distance[k] = order[k].first, sorted[k] = order[k].second;
-  return sorted;
+  std::sort(sorted.begin(), sorted.end());
+  GrowthOrder order;
+  for (const auto& [distance_m, i] : sorted) order.points.push_back(i), order.distance_m.push_back(distance_m);
+  return order;
 }
-
-}  // namespace
 
 float ranking_score(const DirectedScore& a, const DirectedScore& b) {
   constexpr float kContradictionWeight = 5;
@@ -32,11 +30,10 @@ float ranking_score(const DirectedScore& a, const DirectedScore& b) {
          kContradictionWeight * 0.5f * (a.contradiction + b.contradiction);
 }
 
-GrownOverlap grow(const ScanModel& source, const ScanModel& target, const Seed& seed, const GrowOptions& options) {
+GrownOverlap grow(const ScanModel& source, const ScanModel& target, const Seed& seed, const GrowthOrder& order,
+                  const GrowOptions& options) {
   const Eigen::Vector3f centre = source.regions.regions[seed.source_region].centre;
-  std::vector<float> distance;
-  // Denser near the seed: half of the budget goes to its surroundings.
-  const std::vector<std::uint32_t> sample = by_distance(source, centre, 4 * options.max_points, distance);
+  const std::vector<float>& distance = order.distance_m;
   const Pose3f start = seed.target_from_source(source);
   Transform t = Transform::Identity();
   t.linear() = start.rotation.cast<double>();
@@ -53,7 +50,7 @@ GrownOverlap grow(const ScanModel& source, const ScanModel& target, const Seed& 
         static_cast<std::size_t>(std::upper_bound(distance.begin(), distance.end(), radius) - distance.begin());
     std::vector<std::uint32_t> part;
     const std::size_t stride = std::max<std::size_t>(1, n / options.max_points);
-    for (std::size_t k = 0; k < n; k += stride) part.push_back(sample[k]);
+    for (std::size_t k = 0; k < n; k += stride) part.push_back(order.points[k]);
     const bool coarse = step < 3 || (!covers_all && step < 5);
     const Eigen::Vector3d middle = t * centre.cast<double>();
     NormalEquations equations;
@@ -70,6 +67,26 @@ GrownOverlap grow(const ScanModel& source, const ScanModel& target, const Seed& 
   out.source_in_target = score_direction(source, target, pose, {}, stride(source), false);
   out.target_in_source = score_direction(target, source, pose.inverse(), {}, stride(target), false);
   out.score = ranking_score(out.source_in_target, out.target_in_source);
+  return out;
+}
+
+GrownOverlap grow(const ScanModel& source, const ScanModel& target, const Seed& seed, const GrowOptions& options) {
+  return grow(source, target, seed, growth_order(source, seed.source_region, options), options);
+}
+
+std::vector<GrownOverlap> grow_all(const ScanModel& source, const ScanModel& target, std::span<const Seed> seeds,
+                                   const GrowOptions& options) {
+  std::vector<GrowthOrder> orders(source.regions.regions.size());
+  std::vector<std::uint32_t> grown_from;
+  for (const Seed& s : seeds) grown_from.push_back(s.source_region);
+  std::sort(grown_from.begin(), grown_from.end());
+  grown_from.erase(std::unique(grown_from.begin(), grown_from.end()), grown_from.end());
+  parallel_for_index(grown_from.size(), 4,
+                     [&](std::size_t k) { orders[grown_from[k]] = growth_order(source, grown_from[k], options); });
+  std::vector<GrownOverlap> out(seeds.size());
+  parallel_for_index(seeds.size(), 4, [&](std::size_t k) {
+    out[k] = grow(source, target, seeds[k], orders[seeds[k].source_region], options);
+  });
   return out;
 }
 

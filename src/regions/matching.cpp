@@ -2,11 +2,24 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <numeric>
+#include <bit>
+#include <functional>
 
 #include "base/parallel.h"
 
 namespace isthmus {
+namespace {
+
+// One number for a similarity and whose it is, so that selecting compares integers: the greater is the more similar,
+// of equals the one with the smaller index. Not for NaN.
+std::uint64_t key_of(float similarity, std::uint32_t index) {
+  const auto bits = std::bit_cast<std::uint32_t>(similarity + 0.0f);  // one zero
+  const std::uint32_t ordered = bits >> 31 ? ~bits : bits | 0x80000000u;
+  return std::uint64_t{ordered} << 32 | ~index;
+}
+std::uint32_t index_of(std::uint64_t key) { return ~static_cast<std::uint32_t>(key); }
+
+}  // namespace
 
 MatchTable match_descriptors(const FeatureCloud& source, const FeatureCloud& target, std::uint32_t count) {
   using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -23,16 +36,16 @@ MatchTable match_descriptors(const FeatureCloud& source, const FeatureCloud& tar
     const std::size_t first = block * kBlock, rows = std::min(kBlock, n - first);
     const Rows similarity =
         a.middleRows(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(rows)) * b.transpose();
-    std::vector<std::uint32_t> order(m);
+    std::vector<std::uint64_t> keys(m);
     for (std::size_t r = 0; r < rows; ++r) {
       const float* s = similarity.data() + r * m;
-      std::iota(order.begin(), order.end(), 0u);
-      const auto better = [s](std::uint32_t i, std::uint32_t j) { return s[i] != s[j] ? s[i] > s[j] : i < j; };
-      std::nth_element(order.begin(), order.begin() + (table.count - 1), order.end(), better);
-      std::sort(order.begin(), order.begin() + table.count, better);
+      for (std::uint32_t j = 0; j < m; ++j) keys[j] = key_of(s[j], j);
+      std::nth_element(keys.begin(), keys.begin() + (table.count - 1), keys.end(), std::greater<>());
+      std::sort(keys.begin(), keys.begin() + table.count, std::greater<>());
       for (std::uint32_t k = 0; k < table.count; ++k) {
-        table.target[(first + r) * table.count + k] = order[k];
-        table.similarity[(first + r) * table.count + k] = s[order[k]];
+        const std::uint32_t j = index_of(keys[k]);
+        table.target[(first + r) * table.count + k] = j;
+        table.similarity[(first + r) * table.count + k] = s[j];
       }
     }
   });

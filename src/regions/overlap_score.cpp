@@ -1,15 +1,18 @@
 #include "regions/overlap_score.h"
 
+#include <array>
+
+#include "regions/lookups.h"
+
 namespace isthmus {
 namespace {
 
 constexpr float kMinFacing = 0.5f;            // cosine: the two surfaces face the same way within 60 degrees
 constexpr float kFreeToleranceVoxels = 1.5f;  // method.md, facts
 
+// p: point i of `from` in the frame of `to`; j: a point of `to` near it, or -1.
 PointVerdict judge(const ScanModel& from, const ScanModel& to, const Pose3f& to_from, std::size_t i,
-                   const SurfaceLookup& lookup, float tolerance_m) {
-  const Eigen::Vector3f p = to_from * from.points[i];
-  const std::int32_t j = lookup.near(p);
+                   const Eigen::Vector3f& p, std::int32_t j, float tolerance_m) {
   if (j < 0) return to.seen_through(p, tolerance_m) ? PointVerdict::contradicted : PointVerdict::neutral;
   const float facing = to.normals[j].dot(to_from.rotation * from.normals[i]);
   if (facing > kMinFacing) return PointVerdict::supported;
@@ -26,19 +29,25 @@ float tolerance_of(const ScanModel& to, bool coarse) {
 PointVerdicts judge_points(const ScanModel& from, const ScanModel& to, const Pose3f& to_from,
                            std::span<const std::uint32_t> sample, bool coarse) {
   PointVerdicts out(sample.size());
-  for (std::size_t k = 0; k < sample.size(); ++k)
-    out[k] = judge(from, to, to_from, sample[k], lookup_of(to, coarse), tolerance_of(to, coarse));
+  for_each_lookup(
+      from, to, lookup_of(to, coarse), to_from, sample.size(), [&](std::size_t k) { return sample[k]; },
+      [&](std::size_t k, const Eigen::Vector3f& p, std::int32_t j) {
+        out[k] = judge(from, to, to_from, sample[k], p, j, tolerance_of(to, coarse));
+      });
   return out;
 }
 
 DirectedScore score_direction(const ScanModel& from, const ScanModel& to, const Pose3f& to_from,
                               std::span<const std::uint32_t> sample, std::size_t stride, bool coarse) {
   const std::size_t n = sample.empty() ? from.points.size() : sample.size();
-  std::size_t tried = 0, counts[4] = {0, 0, 0, 0};
-  for (std::size_t k = 0; k < n; k += stride, ++tried) {
-    const std::size_t i = sample.empty() ? k : sample[k];
-    ++counts[static_cast<std::size_t>(judge(from, to, to_from, i, lookup_of(to, coarse), tolerance_of(to, coarse)))];
-  }
+  const std::size_t tried = (n + stride - 1) / stride;
+  std::array<std::size_t, 4> counts{};
+  const auto index_of = [&](std::size_t k) { return sample.empty() ? k * stride : sample[k * stride]; };
+  for_each_lookup(from, to, lookup_of(to, coarse), to_from, tried, index_of,
+                  [&](std::size_t k, const Eigen::Vector3f& p, std::int32_t j) {
+                    const PointVerdict v = judge(from, to, to_from, index_of(k), p, j, tolerance_of(to, coarse));
+                    ++counts[static_cast<std::size_t>(v)];
+                  });
   DirectedScore out;
   if (tried == 0) return out;
   const auto share = [&](PointVerdict v) {

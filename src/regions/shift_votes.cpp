@@ -29,8 +29,14 @@ ShiftVotes::ShiftVotes(const GroundPlan& source, const GroundPlan& target, float
   }
 }
 
-std::vector<PlanPose> ShiftVotes::peaks(float yaw, std::size_t count) const {
-  std::vector<float> votes(size_ * size_, 0.0f);
+ShiftVotes::Grid ShiftVotes::grid() const {
+  const std::vector<float> zeros(size_ * size_, 0.0f);
+  return {zeros, zeros, zeros};
+}
+
+std::vector<PlanPose> ShiftVotes::peaks(float yaw, std::size_t count, Grid& grid) const {
+  std::vector<float>& votes = grid.votes;
+  std::fill(votes.begin(), votes.end(), 0.0f);
   const Eigen::Rotation2Df turn(yaw);
   for (const Column& c : source_.columns) {
     const Eigen::Vector2f p = turn * c.p;
@@ -48,15 +54,17 @@ std::vector<PlanPose> ShiftVotes::peaks(float yaw, std::size_t count) const {
     const int middle = static_cast<int>(bin_of(wrapped(c.heading + yaw)));
     for (int d = -kReachBins; d <= kReachBins; ++d) vote(bins_[static_cast<std::size_t>((middle + d + kBins) % kBins)]);
   }
-  return heaviest(votes, yaw, count);
+  return heaviest(grid, yaw, count);
 }
 
 std::size_t ShiftVotes::bin_of(float heading) {
   return static_cast<std::size_t>((heading + kPi) / (2 * kPi) * kBins) % kBins;
 }
-std::vector<PlanPose> ShiftVotes::heaviest(const std::vector<float>& votes, float yaw, std::size_t count) const {
+
+std::vector<PlanPose> ShiftVotes::heaviest(Grid& grid, float yaw, std::size_t count) const {
   const std::size_t n = size_;
-  std::vector<float> rows(n * n, 0.0f), sums(n * n, 0.0f);
+  const std::vector<float>& votes = grid.votes;
+  std::vector<float>&rows = grid.rows, &sums = grid.sums;  // their borders stay zero
   for (std::size_t y = 0; y < n; ++y)
     for (std::size_t x = 1; x + 1 < n; ++x)
       rows[y * n + x] = votes[y * n + x - 1] + votes[y * n + x] + votes[y * n + x + 1];
@@ -120,8 +128,13 @@ std::vector<float> likely_turns(const GroundPlan& source, const GroundPlan& targ
 
 std::vector<PlanPose> heaviest_shifts(const ShiftVotes& votes, const std::vector<float>& turns, std::size_t per_turn,
                                       std::size_t keep) {
+  constexpr std::size_t kTogether = 12;
   std::vector<std::vector<PlanPose>> of_turn(turns.size());
-  parallel_for_index(turns.size(), 4, [&](std::size_t k) { of_turn[k] = votes.peaks(turns[k], per_turn); });
+  parallel_for_index((turns.size() + kTogether - 1) / kTogether, 1, [&](std::size_t part) {
+    ShiftVotes::Grid grid = votes.grid();
+    for (std::size_t k = part * kTogether; k < std::min(turns.size(), (part + 1) * kTogether); ++k)
+      of_turn[k] = votes.peaks(turns[k], per_turn, grid);
+  });
   std::vector<PlanPose> peaks;
   for (const auto& part : of_turn) peaks.insert(peaks.end(), part.begin(), part.end());
   std::stable_sort(peaks.begin(), peaks.end(), [](const PlanPose& a, const PlanPose& b) { return a.votes > b.votes; });

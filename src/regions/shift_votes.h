@@ -14,8 +14,15 @@ class ShiftVotes {
  public:
   ShiftVotes(const GroundPlan& source, const GroundPlan& target, float cell_m);
 
-  /// The `count` heaviest shifts under this turn: local maxima of sums over 3 x 3 cells. Deterministic.
-  [[nodiscard]] std::vector<PlanPose> peaks(float yaw, std::size_t count) const;
+  /// What one turn after another is counted in: allocated once, since fresh pages cost more than the counting.
+  struct Grid {
+    std::vector<float> votes, rows, sums;
+  };
+  [[nodiscard]] Grid grid() const;
+
+  /// The `count` heaviest shifts under this turn: local maxima of sums over 3 x 3 cells. Deterministic, whatever `grid`
+  /// was used for before.
+  [[nodiscard]] std::vector<PlanPose> peaks(float yaw, std::size_t count, Grid& grid) const;
 
  private:
   static constexpr int kBins = 32;
@@ -23,7 +30,7 @@ class ShiftVotes {
 
   static std::size_t bin_of(float heading);
   [[nodiscard]] float offset() const { return 1 + reach_m_ / cell_m_; }
-  [[nodiscard]] std::vector<PlanPose> heaviest(const std::vector<float>& votes, float yaw, std::size_t count) const;
+  [[nodiscard]] std::vector<PlanPose> heaviest(Grid& grid, float yaw, std::size_t count) const;
 
   const GroundPlan& source_;
   const GroundPlan& target_;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -76,6 +77,19 @@ Result<ScanPositions> read(const std::string& file, std::span<const std::string>
 
 Result<ScanPositions> read_positions(const std::string& file, std::span<const std::string> scans) {
   return read(file, scans, kWithoutHeight);
+}
+
+ScanPositions positions_of_files(std::span<const std::pair<std::string, std::optional<Eigen::Vector3d>>> stored) {
+  constexpr double kAtOrigin = 1e-6, kApart = 1;  // metres
+  ScanPositions out;
+  Eigen::AlignedBox3d box;
+  for (const auto& [name, position] : stored) {
+    if (!position || !position->allFinite() || position->norm() < kAtOrigin) continue;
+    out.by_name.emplace(name, *position);
+    box.extend(*position);
+  }
+  if (box.isEmpty() || box.diagonal().norm() < kApart) return {};
+  return out;
 }
 
 Result<ScanPositions> read_stations(const std::string& file, std::span<const std::string> scans) {

@@ -3,8 +3,10 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -21,6 +23,10 @@ struct ScanPositions {
 /// beside them. Scans are named as in scans.csv, or by their file's name with or without its extension. An empty path
 /// is no positions. Errors name line and value.
 Result<ScanPositions> read_positions(const std::string& file, std::span<const std::string> scans);
+
+/// What the files of the scans store, by name. A stored pose at the origin is no position, and positions that do not
+/// lie at least a metre apart tell nothing: then there are none.
+ScanPositions positions_of_files(std::span<const std::pair<std::string, std::optional<Eigen::Vector3d>>> stored);
 
 /// Where the scanner stood, each in the coordinates of its scan's own file (sampling.stations): read_positions() with
 /// heights.

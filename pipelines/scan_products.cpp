@@ -79,6 +79,9 @@ Result<SampledScan> read_and_reduce(const ScanPlan& plan, const SamplingOptions&
     store.keep(plan.intensity, intensities.of(*sampled));
     const std::vector<std::string>& read_notes = (*reader)->header().notes;
     sampled->notes.insert(sampled->notes.begin(), read_notes.begin(), read_notes.end());
+    if (header.file_from_scan)
+      sampled->station_in_file =
+          *header.file_from_scan * header.station_in_scan.value_or(Eigen::Vector3d(Eigen::Vector3d::Zero()));
   }
   return sampled;
 }
@@ -156,6 +159,7 @@ ScanSummary summarise(const ScanProduct& product) {
   out.local_origin_in_scan = scan.local_origin_in_scan;
   out.station_kind = scan.station_kind;
   out.station = scan.station;
+  out.station_in_file = scan.station_in_file;
   out.spacing_m = scan.spacing_m;
   out.num_read = scan.num_read;
   out.num_dropped = scan.num_dropped;

@@ -46,6 +46,7 @@ struct ScanSummary {
   Eigen::Vector3d local_origin_in_scan = Eigen::Vector3d::Zero();
   StationKind station_kind = StationKind::unknown;
   Eigen::Vector3f station = Eigen::Vector3f::Zero();
+  std::optional<Eigen::Vector3d> station_in_file;
   double spacing_m = 0;
   std::uint64_t num_read = 0;
   std::uint64_t num_dropped = 0;
@@ -62,7 +63,7 @@ struct ScanSummary {
   std::vector<std::string> notes;
   template <class F>
   void fields(F&& f) {
-    f(voxel_m), f(local_origin_in_scan), f(station_kind), f(station), f(spacing_m), f(num_read), f(num_dropped);
+    f(voxel_m), f(local_origin_in_scan), f(station_kind), f(station), f(station_in_file), f(spacing_m), f(num_read), f(num_dropped);
     f(num_points), f(num_keypoints), f(num_regions), f(centre), f(radius_m), f(product_bytes), f(dimension);
     f(descriptors), f(outline), f(outline_cell_m), f(notes);
   }

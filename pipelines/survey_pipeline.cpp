@@ -250,6 +250,8 @@ class SurveyGraph {
 
   /// The file was in order when the run began; what has become of it since is only worth a warning.
   ScanPositions prior_positions() {
+    if (settings_.candidates.positions.empty())
+      return settings_.candidates.file_positions ? stored_positions() : ScanPositions{};
     std::vector<std::string> names;
     for (const ScanOutcome& scan : out_.scans) names.push_back(scan.ref.name);
     Result<ScanPositions> positions = read_positions(settings_.candidates.positions, names);
@@ -259,6 +261,18 @@ class SurveyGraph {
     }
     for (const std::string& warning : positions->warnings) warn(warning);
     return std::move(*positions);
+  }
+
+  ScanPositions stored_positions() {
+    std::vector<std::pair<std::string, std::optional<Eigen::Vector3d>>> stored;
+    for (const ScanOutcome& scan : out_.scans)
+      if (scan.summary) stored.emplace_back(scan.ref.name, scan.summary->station_in_file);
+    ScanPositions positions = positions_of_files(stored);
+    if (!positions.by_name.empty())
+      events_.info(fmt::format(
+          "the files of {} scans store a position: near pairs are tried first (candidates.file_positions=false: not)",
+          positions.by_name.size()));
+    return positions;
   }
 
   void submit(PairOutcome& pair, std::vector<Transform> priors) {

@@ -45,6 +45,7 @@ struct SampledScan {
   Eigen::Vector3d local_origin_in_scan = Eigen::Vector3d::Zero();
   StationKind station_kind = StationKind::unknown;
   Eigen::Vector3f station = Eigen::Vector3f::Zero();  ///< in the local frame; meaningful unless unknown
+  std::optional<Eigen::Vector3d> station_in_file;     ///< by the pose that the file stores for the scan, if any
   double station_sigma_m = 0;                         ///< how far from `station` the scanner may have stood
   double blocked_share =
       0;  ///< sight lines from the station that pass through a surface: how far free space can be trusted
@@ -62,7 +63,7 @@ struct SampledScan {
 
   template <class F>
   void fields(F&& f) {
-    f(voxel_m), f(local_origin_in_scan), f(station_kind), f(station), f(station_sigma_m), f(blocked_share), f(points),
+    f(voxel_m), f(local_origin_in_scan), f(station_kind), f(station), f(station_in_file), f(station_sigma_m), f(blocked_share), f(points),
         f(normals), f(variation), f(counts), f(fine), f(free_space);
     f(spacing_m), f(num_read), f(num_dropped), f(no_return_range_m), f(notes);
   }

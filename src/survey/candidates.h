@@ -30,6 +30,7 @@ struct CandidateOptions {
   std::vector<std::string> groups;
   bool only_groups = false;
   std::string positions;
+  bool file_positions = true;
   std::optional<double> max_distance_m;
   bool check_units = true;
 };

@@ -157,6 +157,16 @@ const config::OptionTable<CandidateOptions>& candidate_options_table() {
            "first. Scans "
            "that it does not name are compared by likeness alone.",
            "a sketch, a phone or a total station knows them; poses are never taken from it"},
+          {"file_positions",
+           &O::file_positions,
+           "",
+           -kInf,
+           kInf,
+           {},
+           "Without a file of positions: take those that the scans' own files store with their poses (E57, PTX), as "
+           "far as "
+           "they tell the stations apart.",
+           "field software often knows roughly where a station was; poses are never taken from it"},
           {"max_distance_m",
            &O::max_distance_m,
            "m",

@@ -53,15 +53,18 @@ class ConvertedSurvey : public SurveyOnDisk {
     return to;
   }
 
-  /// All scans in one PTX file, in the order of their names.
-  fs::path in_one_ptx(const fs::path& from) {
+  /// All scans in one PTX file, in the order of their names, at the poses that are given, the others at identity.
+  fs::path in_one_ptx(const fs::path& from, const std::vector<Transform>& poses = {}) {
     const fs::path to = folder_ / "ptx";
     fs::create_directories(to);
     auto writer = io::PtxWriter::create(to / "all.ptx");
     EXPECT_TRUE(writer);
+    std::size_t num_written = 0;
     for (const io::ScanRef& scan : scans_in(from)) {
       const PointChunk points = whole_scan(scan);
-      EXPECT_TRUE(writer->begin_scan(Transform::Identity(), !points.colour.empty()));
+      const Transform pose = num_written < poses.size() ? poses[num_written] : Transform::Identity();
+      ++num_written;
+      EXPECT_TRUE(writer->begin_scan(pose, !points.colour.empty()));
       EXPECT_TRUE(writer->add(points, Eigen::Vector3d::Zero()));
     }
     EXPECT_TRUE(writer->publish());

@@ -1,10 +1,37 @@
 // The same scans in another format are the same survey. On real scans: shared_formats_test.cpp.
+#include <algorithm>
+#include <fstream>
+
 #include "end_to_end/converted_survey.h"
 
 namespace isthmus::testing {
 namespace {
 
 using Formats = ConvertedSurvey;
+
+int pairs_of_first_round(const fs::path& links) {
+  std::ifstream file(links);
+  const auto cells_of = [](const std::string& line) {
+    std::vector<std::string> cells(1);
+    bool quoted = false;
+    for (const char c : line) {
+      if (c == '"')
+        quoted = !quoted;
+      else if (c == ',' && !quoted)
+        cells.emplace_back();
+      else
+        cells.back() += c;
+    }
+    return cells;
+  };
+  std::string line;
+  std::getline(file, line);
+  const std::vector<std::string> columns = cells_of(line);
+  const auto at = std::ranges::find(columns, "first_round") - columns.begin();
+  int count = 0;
+  while (std::getline(file, line)) count += cells_of(line).at(static_cast<std::size_t>(at)) == "1";
+  return count;
+}
 
 TEST_F(Formats, pcd_and_e57_of_floats_give_the_same_bytes) {
   make_survey(3);
@@ -46,6 +73,24 @@ TEST_F(Formats, e57_comes_back_with_the_points_as_they_were_and_the_poses_that_w
     ASSERT_TRUE(reader && (*reader)->header().file_from_scan);
     EXPECT_LT(((*reader)->header().file_from_scan->matrix() - poses[k].matrix()).cwiseAbs().maxCoeff(), 1e-9);
   }
+}
+
+// Far positions are not tried, so that which pairs were tried tells what was believed; where the scans lie, it does
+// not.
+TEST_F(Formats, positions_that_files_store_choose_pairs_and_place_no_scan) {
+  make_survey(4);
+  std::vector<Transform> stored(4, Transform::Identity());
+  for (int k = 0; k < 4; ++k) stored[static_cast<std::size_t>(k)].translation() = Eigen::Vector3d(7, 10.0 * k, 0);
+  const fs::path ptx = in_one_ptx(scans_, stored);
+  const auto first_round_with = [&](const std::string& file_positions) {
+    const Said said = run({"register", ptx.string(), "-o", (folder_ / "with").string(), "--set",
+                           "candidates.max_distance_m=12", "--set", "candidates.file_positions=" + file_positions});
+    EXPECT_EQ(said.err.find("store a position") != std::string::npos, file_positions == "true") << said.err;
+    return pairs_of_first_round(folder_ / "with/links.csv");
+  };
+  EXPECT_EQ(first_round_with("false"), 6);
+  EXPECT_EQ(first_round_with("true"), 3) << "only neighbours are nearer than 12 m";
+  expect_same_poses(poses_of(scans_, out_), poses_of(ptx, folder_ / "with"), Eigen::Vector3d::Zero());
 }
 
 TEST_F(Formats, las_in_map_coordinates_with_its_stations_is_the_same_survey) {

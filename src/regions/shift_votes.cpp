@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -12,6 +13,57 @@ namespace isthmus {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
+
+// Sums over 3 x 3 cells of a square grid, three rows at a time: all of them would not stay in cache.
+class VoteSums {
+ public:
+  VoteSums(const std::vector<float>& votes, std::size_t n) : votes_(votes), n_(n) {
+    for (auto* rows : {&across_, &sums_})
+      for (std::vector<float>& row : *rows) row.assign(n, 0.0f);
+    if (n < 3) return;
+    add_across(0), add_across(1), add_across(2);
+    sum_up(1);
+  }
+
+  /// To the rows 1, 2, 3 ... n - 2, one after the other.
+  void go_to(std::size_t y) {
+    y_ = y;
+    if (y + 2 < n_) {
+      add_across(y + 2);
+      sum_up(y + 1);
+    } else {
+      std::ranges::fill(sums_[(y + 1) % 3], 0.0f);
+    }
+  }
+  [[nodiscard]] const float* row(int offset) const {
+    return sums_[(y_ + static_cast<std::size_t>(3 + offset)) % 3].data();
+  }
+  [[nodiscard]] float heaviest() const { return heaviest_[y_ % 3]; }
+
+ private:
+  void add_across(std::size_t y) {
+    const float* v = votes_.data() + y * n_;
+    float* out = across_[y % 3].data();
+    for (std::size_t x = 1; x + 1 < n_; ++x) out[x] = v[x - 1] + v[x] + v[x + 1];
+  }
+  void sum_up(std::size_t y) {
+    const float *a = across_[(y - 1) % 3].data(), *b = across_[y % 3].data(), *c = across_[(y + 1) % 3].data();
+    float* out = sums_[y % 3].data();
+    for (std::size_t x = 1; x + 1 < n_; ++x) out[x] = a[x] + b[x] + c[x];
+    constexpr std::size_t kLanes = 8;  // so that the comparisons need not wait for each other
+    std::array<float, kLanes> most{};
+    const std::size_t whole = n_ / kLanes * kLanes;
+    for (std::size_t x = 0; x < whole; x += kLanes)
+      for (std::size_t k = 0; k < kLanes; ++k) most[k] = most[k] < out[x + k] ? out[x + k] : most[k];
+    for (std::size_t x = whole; x < n_; ++x) most[0] = std::max(most[0], out[x]);
+    heaviest_[y % 3] = *std::ranges::max_element(most);
+  }
+
+  const std::vector<float>& votes_;
+  std::size_t n_, y_ = 0;
+  std::array<std::vector<float>, 3> across_, sums_;  // by row modulo 3; the first and last cell stay zero
+  std::array<float, 3> heaviest_{};
+};
 
 }  // namespace
 
@@ -29,14 +81,10 @@ ShiftVotes::ShiftVotes(const GroundPlan& source, const GroundPlan& target, float
   }
 }
 
-ShiftVotes::Grid ShiftVotes::grid() const {
-  const std::vector<float> zeros(size_ * size_, 0.0f);
-  return {zeros, zeros, zeros};
-}
+std::vector<float> ShiftVotes::grid() const { return std::vector<float>(size_ * size_, 0.0f); }
 
-std::vector<PlanPose> ShiftVotes::peaks(float yaw, std::size_t count, Grid& grid) const {
-  std::vector<float>& votes = grid.votes;
-  std::fill(votes.begin(), votes.end(), 0.0f);
+std::vector<PlanPose> ShiftVotes::peaks(float yaw, std::size_t count, std::vector<float>& votes) const {
+  std::ranges::fill(votes, 0.0f);
   const Eigen::Rotation2Df turn(yaw);
   for (const Column& c : source_.columns) {
     const Eigen::Vector2f p = turn * c.p;
@@ -54,37 +102,33 @@ std::vector<PlanPose> ShiftVotes::peaks(float yaw, std::size_t count, Grid& grid
     const int middle = static_cast<int>(bin_of(wrapped(c.heading + yaw)));
     for (int d = -kReachBins; d <= kReachBins; ++d) vote(bins_[static_cast<std::size_t>((middle + d + kBins) % kBins)]);
   }
-  return heaviest(grid, yaw, count);
+  return heaviest(votes, yaw, count);
 }
 
 std::size_t ShiftVotes::bin_of(float heading) {
   return static_cast<std::size_t>((heading + kPi) / (2 * kPi) * kBins) % kBins;
 }
 
-std::vector<PlanPose> ShiftVotes::heaviest(Grid& grid, float yaw, std::size_t count) const {
+std::vector<PlanPose> ShiftVotes::heaviest(const std::vector<float>& votes, float yaw, std::size_t count) const {
   const std::size_t n = size_;
-  const std::vector<float>& votes = grid.votes;
-  std::vector<float>&rows = grid.rows, &sums = grid.sums;  // their borders stay zero
-  for (std::size_t y = 0; y < n; ++y)
-    for (std::size_t x = 1; x + 1 < n; ++x)
-      rows[y * n + x] = votes[y * n + x - 1] + votes[y * n + x] + votes[y * n + x + 1];
-  for (std::size_t y = 1; y + 1 < n; ++y)
-    for (std::size_t x = 1; x + 1 < n; ++x)
-      sums[y * n + x] = rows[(y - 1) * n + x] + rows[y * n + x] + rows[(y + 1) * n + x];
+  VoteSums sums(votes, n);
   std::vector<std::pair<float, std::uint32_t>> best;
-  for (std::size_t y = 1; y + 1 < n; ++y)
+  for (std::size_t y = 1; y + 1 < n; ++y) {
+    sums.go_to(y);
+    if (!(sums.heaviest() > 0) || (best.size() == count && sums.heaviest() <= best.front().first)) continue;
+    const float *above = sums.row(-1), *here = sums.row(0), *below = sums.row(1);
     for (std::size_t x = 1; x + 1 < n; ++x) {
-      const std::size_t k = y * n + x;
-      const float s = sums[k];
+      const float s = here[x];
       if (!(s > 0) || (best.size() == count && s <= best.front().first)) continue;
-      if (s < sums[k - 1] || s <= sums[k + 1] || s < sums[k - n] || s <= sums[k + n]) continue;
+      if (s < here[x - 1] || s <= here[x + 1] || s < above[x] || s <= below[x]) continue;
       if (best.size() == count) {
         std::pop_heap(best.begin(), best.end(), std::greater<>());
         best.pop_back();
       }
-      best.emplace_back(s, static_cast<std::uint32_t>(k));
+      best.emplace_back(s, static_cast<std::uint32_t>(y * n + x));
       std::push_heap(best.begin(), best.end(), std::greater<>());
     }
+  }
   std::sort(best.begin(), best.end(),
             [](const auto& a, const auto& b) { return a.first != b.first ? a.first > b.first : a.second < b.second; });
   std::vector<PlanPose> out;
@@ -131,7 +175,7 @@ std::vector<PlanPose> heaviest_shifts(const ShiftVotes& votes, const std::vector
   constexpr std::size_t kTogether = 12;
   std::vector<std::vector<PlanPose>> of_turn(turns.size());
   parallel_for_index((turns.size() + kTogether - 1) / kTogether, 1, [&](std::size_t part) {
-    ShiftVotes::Grid grid = votes.grid();
+    std::vector<float> grid = votes.grid();
     for (std::size_t k = part * kTogether; k < std::min(turns.size(), (part + 1) * kTogether); ++k)
       of_turn[k] = votes.peaks(turns[k], per_turn, grid);
   });

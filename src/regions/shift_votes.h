@@ -15,14 +15,11 @@ class ShiftVotes {
   ShiftVotes(const GroundPlan& source, const GroundPlan& target, float cell_m);
 
   /// What one turn after another is counted in: allocated once, since fresh pages cost more than the counting.
-  struct Grid {
-    std::vector<float> votes, rows, sums;
-  };
-  [[nodiscard]] Grid grid() const;
+  [[nodiscard]] std::vector<float> grid() const;
 
   /// The `count` heaviest shifts under this turn: local maxima of sums over 3 x 3 cells. Deterministic, whatever `grid`
   /// was used for before.
-  [[nodiscard]] std::vector<PlanPose> peaks(float yaw, std::size_t count, Grid& grid) const;
+  [[nodiscard]] std::vector<PlanPose> peaks(float yaw, std::size_t count, std::vector<float>& grid) const;
 
  private:
   static constexpr int kBins = 32;
@@ -30,7 +27,7 @@ class ShiftVotes {
 
   static std::size_t bin_of(float heading);
   [[nodiscard]] float offset() const { return 1 + reach_m_ / cell_m_; }
-  [[nodiscard]] std::vector<PlanPose> heaviest(Grid& grid, float yaw, std::size_t count) const;
+  [[nodiscard]] std::vector<PlanPose> heaviest(const std::vector<float>& votes, float yaw, std::size_t count) const;
 
   const GroundPlan& source_;
   const GroundPlan& target_;

@@ -63,7 +63,8 @@ struct ScanSummary {
   std::vector<std::string> notes;
   template <class F>
   void fields(F&& f) {
-    f(voxel_m), f(local_origin_in_scan), f(station_kind), f(station), f(station_in_file), f(spacing_m), f(num_read), f(num_dropped);
+    f(voxel_m), f(local_origin_in_scan), f(station_kind), f(station), f(station_in_file), f(spacing_m), f(num_read),
+        f(num_dropped);
     f(num_points), f(num_keypoints), f(num_regions), f(centre), f(radius_m), f(product_bytes), f(dimension);
     f(descriptors), f(outline), f(outline_cell_m), f(notes);
   }

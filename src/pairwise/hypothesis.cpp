@@ -1,5 +1,6 @@
 #include "pairwise/hypothesis.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -45,7 +46,9 @@ Profile profile(const ScanModel& from, const ScanModel& to, const Transform& to_
         if (facing < -kMinFacing) ++against;
         if (facing < kMinFacing) return;
         const float ratio = n.dot(p - to.points[j]) / (tolerance_m(to, j) + widened_m);
-        out.support[k] = std::max(0.0f, 1 - ratio * ratio);
+        if (!(ratio * ratio < 1)) return;
+        out.support[k] = 1 - ratio * ratio;
+        out.stiffness.noalias() += out.support[k] * n * n.transpose();
       });
   const double scale = sample.empty() ? 0.0 : 1.0 / static_cast<double>(sample.size());
   out.contradiction = static_cast<double>(contradicted) * scale;
@@ -97,6 +100,19 @@ double free_space_factor(const Hypothesis& h) {
   return std::exp(-0.5 * (share(h.source) + share(h.target)) / kDecay);
 }
 
+// Planes that all face one way, a floor or one wall, fix no place: such a pose explains much and can lie anywhere along
+// them. Of 597 right poses of 30 sets twelve had a smallest stiffness below 2 % of the largest; three in
+// four of the wrong ones that scans of offices were laid in had less than 0.03 %.
+double observed_factor(const Profile& forward, const Profile& backward, const Transform& target_from_source) {
+  constexpr double kObserved = 0.02, kLeast = 0.05;
+  const Eigen::Matrix3f turn = target_from_source.linear().cast<float>();
+  const Eigen::Matrix3f stiffness = forward.stiffness + turn * backward.stiffness * turn.transpose();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+  const Eigen::Vector3f of_axes = solver.computeDirect(stiffness, Eigen::EigenvaluesOnly).eigenvalues();
+  if (!(of_axes[2] > 0)) return 1;
+  return std::clamp(static_cast<double>(of_axes[0] / of_axes[2]) / kObserved, kLeast, 1.0);
+}
+
 // Where the vertical of both scans is known, a pose that turns them apart is doubtful: at right poses of seven sets
 // they lay within 1.7 degrees of each other, and nearby tilted poses often explained as much. A doubt, no ban: the
 // vertical of a hillside is that of its surface; and none where the turn is wide: then one of the two is no vertical.
@@ -115,12 +131,13 @@ double upright_factor(const ScanModel& source, const ScanModel& target, const Tr
 // The score of one pose alone, every point weighing the same.
 double score_alone(const ScanModel& source, const ScanModel& target, std::span<const std::uint32_t> from,
                    std::span<const std::uint32_t> to, const Transform& target_from_source, float widened_m = 0) {
+  const Profile forward = profile(source, target, target_from_source, from, widened_m),
+                backward = profile(target, source, target_from_source.inverse(), to, widened_m);
   Hypothesis h;
-  h.source =
-      summary(profile(source, target, target_from_source, from, widened_m), std::vector<float>(from.size(), 1.0f));
-  h.target = summary(profile(target, source, target_from_source.inverse(), to, widened_m),
-                     std::vector<float>(to.size(), 1.0f));
-  return combined_support(h) * free_space_factor(h) * upright_factor(source, target, target_from_source);
+  h.source = summary(forward, std::vector<float>(from.size(), 1.0f));
+  h.target = summary(backward, std::vector<float>(to.size(), 1.0f));
+  return combined_support(h) * free_space_factor(h) * upright_factor(source, target, target_from_source) *
+         observed_factor(forward, backward, target_from_source);
 }
 
 // Mean of the source points that lie on the target's surface, and how far they reach from it.
@@ -360,8 +377,10 @@ void weigh(const ScanModel& source, const ScanModel& target, const Weighing& wei
     Hypothesis& h = hypotheses[k];
     h.source = summary(h.profiles->forward, from_weight);
     h.target = summary(h.profiles->backward, to_weight);
-    h.score = combined_support(h) * (weighing.free_space ? free_space_factor(h) : 1.0) *
-              (weighing.upright ? upright_factor(source, target, h.target_from_source) : 1.0);
+    h.score =
+        combined_support(h) * (weighing.free_space ? free_space_factor(h) : 1.0) *
+        (weighing.upright ? upright_factor(source, target, h.target_from_source) : 1.0) *
+        (weighing.observed ? observed_factor(h.profiles->forward, h.profiles->backward, h.target_from_source) : 1.0);
   }
   std::stable_sort(hypotheses.begin(), hypotheses.end(),
                    [](const auto& a, const auto& b) { return a.score > b.score; });

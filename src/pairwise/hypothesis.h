@@ -22,6 +22,7 @@ struct DirectedEvidence {
 struct Profile {
   std::vector<float> support;  ///< per sampled point, 0 to 1
   double contradiction = 0, against = 0;
+  Eigen::Matrix3f stiffness = Eigen::Matrix3f::Zero();  ///< sum of support x normal normal^T, in the other scan's frame
 };
 
 /// Both directions of one pose. Hypotheses are weighed again whenever their set changes; their points say the same as
@@ -72,6 +73,7 @@ struct Weighing {
   bool rarity = true;             ///< false: every point weighs the same
   bool free_space = true;         ///< false: contradictions do not lower the score
   bool upright = true;            ///< false: verticals that are turned apart do not either
+  bool observed = true;           ///< false: nor do directions that nothing fixes
 };
 
 /// Fills the evidence and score of all and sorts them best first. What every hypothesis explains (floors, long walls)

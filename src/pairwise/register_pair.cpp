@@ -153,7 +153,7 @@ const config::OptionTable<PairOptions>& pair_options_table() {
            "",
            0,
            0,
-           {"growth", "super4pcs", "fine", "rarity", "free_space", "upright"},
+           {"growth", "super4pcs", "fine", "rarity", "free_space", "upright", "observed"},
            "Parts of the method left out, for experiments: what does each bring?",
            "docs/bench.md"},
       }};
@@ -494,7 +494,8 @@ class PairSearch {
   // Weighed, twins dropped, and weighed again: the share that supports a point is among distinct poses.
   void rank(const ScanModel& source, const ScanModel& target, std::vector<Hypothesis>& hypotheses) const {
     const Weighing weighing{static_cast<std::size_t>(options_.score_points), !options_.leaves_out("rarity"),
-                            !options_.leaves_out("free_space"), !options_.leaves_out("upright")};
+                            !options_.leaves_out("free_space"), !options_.leaves_out("upright"),
+                            !options_.leaves_out("observed")};
     weigh(source, target, weighing, hypotheses);
     const std::size_t before = hypotheses.size();
     keep_distinct(source, 2 * source.scan.voxel_m, hypotheses);

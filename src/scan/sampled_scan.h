@@ -63,8 +63,8 @@ struct SampledScan {
 
   template <class F>
   void fields(F&& f) {
-    f(voxel_m), f(local_origin_in_scan), f(station_kind), f(station), f(station_in_file), f(station_sigma_m), f(blocked_share), f(points),
-        f(normals), f(variation), f(counts), f(fine), f(free_space);
+    f(voxel_m), f(local_origin_in_scan), f(station_kind), f(station), f(station_in_file), f(station_sigma_m),
+        f(blocked_share), f(points), f(normals), f(variation), f(counts), f(fine), f(free_space);
     f(spacing_m), f(num_read), f(num_dropped), f(no_return_range_m), f(notes);
   }
 };

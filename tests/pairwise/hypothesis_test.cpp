@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -143,6 +144,35 @@ TEST(Weigh, VerticalsThatLieApartAreADoubtNotABan) {
   EXPECT_NEAR(score_of(pair, tilted) / free_tilted, std::exp(-2.0), 1e-6) << "3 degrees beyond 1, in units of 1.5";
   EXPECT_NEAR(score_of(pair, far_off) / free_far, 0.05, 1e-9);
   EXPECT_EQ(score_of(pair, wide), free_wide) << "one of the two is no vertical";
+}
+
+TEST(Weigh, APoseThatOnePlaneExplainsIsWorthATwentieth) {
+  const auto scores_of = [](const ScanModel& source, const ScanModel& target, const Transform& t) {
+    std::array<double, 2> scores{};
+    for (const bool observed : {false, true}) {
+      std::vector<Hypothesis> one{at(t)};
+      Weighing weighing;
+      weighing.observed = observed;
+      weigh(source, target, weighing, one);
+      scores[observed] = one[0].score;
+    }
+    return scores;
+  };
+  testing::Scene floor;
+  floor.add_rectangle({-9, -9, -1.5}, {18, 0, 0}, {0, 18, 0});
+  testing::SamplingSetup setup;
+  setup.options.station = "origin";
+  const ScanProduct flat =
+      testing::product_of(testing::scan_scene(floor, pose_of({0, 0, 0}), {40000, 12, 0.002, 1}), 0.3, setup);
+  const ScanModel model(flat.sampled, flat.features, flat.regions, ModelLevel::coarse);
+  const auto on_floor = scores_of(model, model, pose_of({1, 2, 0}, {0, 0, 0.7}));
+  ASSERT_GT(on_floor[0], 0.3);
+  EXPECT_NEAR(on_floor[1] / on_floor[0], 0.05, 1e-9);
+
+  const HallPair pair;
+  const auto in_hall = scores_of(pair.source, pair.target, pair.data.target_from_source);
+  ASSERT_GT(in_hall[0], 0);
+  EXPECT_EQ(in_hall[1], in_hall[0]) << "floor and walls fix the place";
 }
 
 TEST(Climb, ReachesTheTruthFromAVoxelAwayAndNeverEndsLower) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace isthmus {
 namespace {
 
@@ -107,6 +109,52 @@ TEST(Probability, GrowsWithTheScoreAndFallsWithTheRivalAndContradiction) {
     EXPECT_LE(probability_of(e), last);
     last = probability_of(e);
   }
+}
+
+// Rooms of one plan laid on each other: much support, and a few per cent of what both see against it.
+TEST(Probability, TheSameShareContradictsMoreWhereTheScansSeeNearlyTheSame) {
+  const auto odds = [](double support, double share) {
+    PairEvidence e = good_evidence();
+    e.score = 0.1, e.rival_score = 0.05;
+    e.support = support, e.contradiction = support * share / (1 - share);
+    const double p = probability_of(e);
+    return std::log(p / (1 - p));
+  };
+  EXPECT_GT(odds(0.7, 0.003) - odds(0.7, 0.03), 2);
+  EXPECT_LT(odds(0.1, 0.003) - odds(0.1, 0.03), 0.5) << "edges of what little is shared";
+}
+
+TEST(Probability, OfWhatWasWrittenDownIsTheSame) {
+  for (const bool free_space : {false, true}) {
+    PairEvidence e = good_evidence();
+    e.free_space = free_space, e.contradiction = 0.01, e.near_score = 0.1;
+    PairResult result;
+    judge(e, {}, result);
+    EXPECT_EQ(probability_against(result, e.rival_score), result.probability);
+    EXPECT_LT(probability_against(result, e.score), result.probability);
+  }
+}
+
+// Of a pair that is not sure by itself: what contradicts it, less the more the scans overlap.
+TEST(FreeSpace, ForbidsLessOfAPairThatIsSureByItself) {
+  const auto forbidden = [](double overlap, double share, double rival_score) {
+    PairEvidence e = good_evidence();
+    e.rival_score = rival_score;
+    e.support = 0.6 * overlap, e.contradiction = overlap * share / (1 - share);
+    PairResult result;
+    judge(e, {}, result);
+    result.overlap = overlap;
+    return forbidden_by_free_space(result);
+  };
+  constexpr double kClose = 0.25, kNone = 0.0;
+  EXPECT_TRUE(forbidden(0.7, 0.02, kClose));
+  EXPECT_FALSE(forbidden(0.7, 0.01, kClose));
+  EXPECT_FALSE(forbidden(0.35, 0.04, kClose));
+  EXPECT_TRUE(forbidden(0.35, 0.055, kClose));
+  EXPECT_TRUE(forbidden(0.2, 0.065, kClose));
+  EXPECT_FALSE(forbidden(0.08, 0.2, kClose)) << "the edges of what little is shared";
+  EXPECT_FALSE(forbidden(0.5, 0.03, kNone)) << "sure by itself";
+  EXPECT_TRUE(forbidden(0.7, 0.1, kNone)) << "too much for any pair";
 }
 
 TEST(Probability, AnEqualRivalIsNeverTrusted) {

@@ -275,7 +275,7 @@ TEST(Solve, LinksThatFreeSpaceForbidsConfirmNobody) {
   }
   EXPECT_EQ(solve(world.graph, {}).components.size(), 2U);
   world.graph.links[2].result.evidence =
-      world.graph.links[3].result.evidence = {{"support", 0.5}, {"contradiction", 0.02}};
+      world.graph.links[3].result.evidence = {{"support", 0.5}, {"contradiction", 0.005}};
   EXPECT_EQ(solve(world.graph, {}).components.size(), 1U);
 }
 

@@ -42,7 +42,7 @@ struct BenchRun {
 // Each stage left out in turn, and plain Super4PCS on the whole clouds' overlap with nothing before it.
 std::vector<Variant> ablation_variants() {
   std::vector<Variant> out;
-  for (const char* part : {"growth", "super4pcs", "fine", "rarity", "free_space", "upright"})
+  for (const char* part : {"growth", "super4pcs", "fine", "rarity", "free_space", "upright", "observed"})
     out.push_back({fmt::format("without {}", part), {fmt::format("pair.without=[{}]", part)}, false});
   out.push_back({"without stem votes", {"pair.generators=[axis_votes, column_votes, pair_votes]"}, false});
   out.push_back({"without stem and column votes", {"pair.generators=[axis_votes, pair_votes]"}, false});

@@ -93,9 +93,9 @@ bool forbidden_by_free_space(const PairResult& result) {
   const PairEvidence e = terms_of(result);
   if (vetoed(e)) return true;
   // Corridors and rooms of one plan laid on each other: two thirds of both are explained and 2 to 4 % contradicted. Of
-  // 153 right poses above 40 % overlap eight are beyond this limit, six of them sure by themselves; of 148 wrong ones
+  // 153 right poses above 40 % overlap ten are beyond this limit, eight of them sure by themselves; of 148 wrong ones
   // 144.
-  constexpr double kSure = 0.95, kLeastOverlap = 0.1, kLittle = 0.3, kMuch = 0.5, kLimitOfLittle = 0.06,
+  constexpr double kSure = 0.95, kLeastOverlap = 0.1, kLittle = 0.3, kMuch = 0.5, kLimitOfLittle = 0.04,
                    kLimitOfMuch = 0.015;
   if (result.probability > kSure || result.overlap < kLeastOverlap) return false;
   const double much = std::clamp((result.overlap - kLittle) / (kMuch - kLittle), 0.0, 1.0);

@@ -149,9 +149,10 @@ TEST(FreeSpace, ForbidsLessOfAPairThatIsSureByItself) {
   constexpr double kClose = 0.25, kNone = 0.0;
   EXPECT_TRUE(forbidden(0.7, 0.02, kClose));
   EXPECT_FALSE(forbidden(0.7, 0.01, kClose));
-  EXPECT_FALSE(forbidden(0.35, 0.04, kClose));
-  EXPECT_TRUE(forbidden(0.35, 0.055, kClose));
-  EXPECT_TRUE(forbidden(0.2, 0.065, kClose));
+  EXPECT_FALSE(forbidden(0.35, 0.03, kClose));
+  EXPECT_TRUE(forbidden(0.35, 0.038, kClose));
+  EXPECT_FALSE(forbidden(0.2, 0.035, kClose));
+  EXPECT_TRUE(forbidden(0.2, 0.045, kClose));
   EXPECT_FALSE(forbidden(0.08, 0.2, kClose)) << "the edges of what little is shared";
   EXPECT_FALSE(forbidden(0.5, 0.03, kNone)) << "sure by itself";
   EXPECT_TRUE(forbidden(0.7, 0.1, kNone)) << "too much for any pair";

@@ -126,7 +126,7 @@ void judge(const PairEvidence& e, const PairOptions& options, PairResult& result
   }
   result.verdict = result.probability >= options.ambiguous_probability ? Verdict::ambiguous : Verdict::rejected;
   constexpr double kClearMargin = 1.5;
-  if (vetoed(e) || (doubtful(e) && result.probability >= kDoubtfulProbability))
+  if (forbidden_by_free_space(result) || (doubtful(e) && result.probability >= kDoubtfulProbability))
     result.reason =
         fmt::format("{:.1f} % of the points stand where the other station saw through", 100 * e.contradiction);
   else if (unobserved(e) && e.support > 0)

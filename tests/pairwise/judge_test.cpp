@@ -142,9 +142,11 @@ TEST(FreeSpace, ForbidsLessOfAPairThatIsSureByItself) {
     e.rival_score = rival_score;
     e.support = 0.6 * overlap, e.contradiction = overlap * share / (1 - share);
     PairResult result;
-    judge(e, {}, result);
     result.overlap = overlap;
-    return forbidden_by_free_space(result);
+    judge(e, {}, result);
+    const bool found = forbidden_by_free_space(result);
+    EXPECT_EQ(result.reason.find("saw through") != std::string::npos, found) << result.reason;
+    return found;
   };
   constexpr double kClose = 0.25, kNone = 0.0;
   EXPECT_TRUE(forbidden(0.7, 0.02, kClose));

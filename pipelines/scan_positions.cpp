@@ -83,8 +83,11 @@ ScanPositions positions_of_files(std::span<const std::pair<std::string, std::opt
   constexpr double kAtOrigin = 1e-6, kApart = 1;  // metres
   ScanPositions out;
   Eigen::AlignedBox3d box;
-  for (const auto& [name, position] : stored) {
-    if (!position || !position->allFinite() || position->norm() < kAtOrigin) continue;
+  const auto at_origin = [](const auto& scan) { return scan.second && scan.second->norm() < kAtOrigin; };
+  const bool origin_is_none = std::ranges::count_if(stored, at_origin) > 1;
+  for (const auto& scan : stored) {
+    const auto& [name, position] = scan;
+    if (!position || !position->allFinite() || (origin_is_none && at_origin(scan))) continue;
     out.by_name.emplace(name, *position);
     box.extend(*position);
   }

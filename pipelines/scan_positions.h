@@ -24,8 +24,8 @@ struct ScanPositions {
 /// is no positions. Errors name line and value.
 Result<ScanPositions> read_positions(const std::string& file, std::span<const std::string> scans);
 
-/// What the files of the scans store, by name. A stored pose at the origin is no position, and positions that do not
-/// lie at least a metre apart tell nothing: then there are none.
+/// What the files of the scans store, by name. Where several stand at the origin it is no position but the pose of
+/// files that know none; positions that do not lie at least a metre apart tell nothing: then there are none.
 ScanPositions positions_of_files(std::span<const std::pair<std::string, std::optional<Eigen::Vector3d>>> stored);
 
 /// Where the scanner stood, each in the coordinates of its scan's own file (sampling.stations): read_positions() with

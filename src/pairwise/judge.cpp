@@ -36,7 +36,8 @@ bool doubtful(const PairEvidence& e) {
 }
 
 // Where one direction is not observed at all (one plane, parallel walls, a piece of floor) no share explained tells
-// where along it the pair belongs, whatever the other hypotheses are. The least at right poses: 0.02 (a Stanford view).
+// where along it the pair belongs, whatever the other hypotheses are. Of 612 right poses 16 have less than 0.02, two
+// less than 0.01.
 bool unobserved(const PairEvidence& e) {
   constexpr double kNotObserved = 0.01;
   return e.observability < kNotObserved;
@@ -119,7 +120,7 @@ void judge(const PairEvidence& e, const PairOptions& options, PairResult& result
                      {"share_under_6mm", e.share_under_6mm},
                      {"share_under_20mm", e.share_under_20mm}};
   result.probability = probability_of(e);
-  if (result.probability >= options.accept_probability) {
+  if (result.probability >= options.accept_probability && !forbidden_by_free_space(result)) {
     result.verdict = Verdict::accepted;
     result.reason = fmt::format("{:.0f} % of the smaller scan is explained and no rival comes near", 100 * e.support);
     return;

@@ -154,7 +154,8 @@ const config::OptionTable<PairOptions>& pair_options_table() {
            0,
            0,
            {"growth", "super4pcs", "fine", "rarity", "free_space", "upright", "observed"},
-           "Parts of the method left out, for experiments: what does each bring?",
+           "Parts of the method left out, for experiments: what does each bring? The last three: of the weighing; "
+           "climbing keeps them.",
            "docs/bench.md"},
       }};
   return table;

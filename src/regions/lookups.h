@@ -26,8 +26,8 @@ void for_each_lookup(const ScanModel& from, const ScanModel& to, const SurfaceLo
     }
     for (std::size_t b = 0; b < n; ++b) {
       const auto j = static_cast<std::size_t>(std::max(near[b], 0));
-      __builtin_prefetch(&to.normals[j]);
-      __builtin_prefetch(&to.points[j]);
+      __builtin_prefetch(to.normals.data() + j);
+      __builtin_prefetch(to.points.data() + j);
     }
     for (std::size_t b = 0; b < n; ++b) f(first + b, moved[b], near[b]);
   }

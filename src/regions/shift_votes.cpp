@@ -84,7 +84,7 @@ ShiftVotes::ShiftVotes(const GroundPlan& source, const GroundPlan& target, float
 std::vector<float> ShiftVotes::grid() const { return std::vector<float>(size_ * size_, 0.0f); }
 
 std::vector<PlanPose> ShiftVotes::peaks(float yaw, std::size_t count, std::vector<float>& votes) const {
-  std::ranges::fill(votes, 0.0f);
+  votes.assign(size_ * size_, 0.0f);
   const Eigen::Rotation2Df turn(yaw);
   for (const Column& c : source_.columns) {
     const Eigen::Vector2f p = turn * c.p;

@@ -70,9 +70,11 @@ TEST_F(ScanPositionsFile, stations_have_heights) {
 TEST(PositionsOfFiles, are_those_that_tell_stations_apart) {
   using Stored = std::vector<std::pair<std::string, std::optional<Eigen::Vector3d>>>;
   const Eigen::Vector3d far(512345.6, 5243210.9, 432.1), origin(0, 0, 0);
-  const auto found =
-      positions_of_files(Stored{{"a", far}, {"b", far + Eigen::Vector3d(3, 0, 0)}, {"c", std::nullopt}, {"d", origin}});
-  ASSERT_EQ(found.by_name.size(), 2U) << "no pose, or one at the origin, is no position";
+  const auto found = positions_of_files(
+      Stored{{"a", far}, {"b", far + Eigen::Vector3d(3, 0, 0)}, {"c", std::nullopt}, {"d", origin}, {"e", origin}});
+  ASSERT_EQ(found.by_name.size(), 2U) << "no pose, or that of several at the origin, is no position";
+  EXPECT_EQ(positions_of_files(Stored{{"a", Eigen::Vector3d(4, 0, 0)}, {"b", origin}}).by_name.size(), 2U)
+      << "the reference station";
   EXPECT_EQ(found.by_name.at("a"), far);
   EXPECT_TRUE(found.warnings.empty());
   EXPECT_TRUE(positions_of_files(Stored{{"a", far}, {"b", far + Eigen::Vector3d(0.5, 0, 0)}}).by_name.empty())

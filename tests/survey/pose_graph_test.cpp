@@ -274,6 +274,10 @@ TEST(Solve, LinksThatFreeSpaceForbidsConfirmNobody) {
     link.result.evidence = {{"support", 0.5}, {"contradiction", 0.06}};
   }
   EXPECT_EQ(solve(world.graph, {}).components.size(), 2U);
+  for (const std::size_t k : {2u, 3u}) world.graph.links[k].result.overlap = 0.5;
+  world.graph.links[2].result.evidence =
+      world.graph.links[3].result.evidence = {{"support", 0.5}, {"contradiction", 0.02}};
+  EXPECT_EQ(solve(world.graph, {}).components.size(), 2U) << "4 % where half is shared";
   world.graph.links[2].result.evidence =
       world.graph.links[3].result.evidence = {{"support", 0.5}, {"contradiction", 0.005}};
   EXPECT_EQ(solve(world.graph, {}).components.size(), 1U);

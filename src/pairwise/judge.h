@@ -38,7 +38,8 @@ double contradicting_share(const PairResult& result);
 
 /// Whether free space forbids the pose: too much of a scan stands where the other station saw through. No support, and
 /// no other link that agrees, outweighs it: rooms that repeat agree with each other. Of a pair that is not sure by
-/// itself less is too much, the less the more the scans overlap. False where nothing was measured.
+/// itself, or whose support other hypotheses share, less is too much, the less the more the scans overlap. False where
+/// nothing was measured.
 bool forbidden_by_free_space(const PairResult& result);
 
 /// Verdict, probability and reason of `result`, from its evidence.

@@ -137,10 +137,11 @@ TEST(Probability, OfWhatWasWrittenDownIsTheSame) {
 
 // Of a pair that is not sure by itself: what contradicts it, less the more the scans overlap.
 TEST(FreeSpace, ForbidsLessOfAPairThatIsSureByItself) {
-  const auto forbidden = [](double overlap, double share, double rival_score) {
+  const auto forbidden = [](double overlap, double share, double rival_score, double rare = 0.6) {
     PairEvidence e = good_evidence();
     e.rival_score = rival_score;
-    e.support = 0.6 * overlap, e.contradiction = overlap * share / (1 - share);
+    e.support = 0.6 * overlap, e.rare_support = rare * e.support;
+    e.contradiction = overlap * share / (1 - share);
     PairResult result;
     result.overlap = overlap;
     judge(e, {}, result);
@@ -157,6 +158,7 @@ TEST(FreeSpace, ForbidsLessOfAPairThatIsSureByItself) {
   EXPECT_TRUE(forbidden(0.2, 0.045, kClose));
   EXPECT_FALSE(forbidden(0.08, 0.2, kClose)) << "the edges of what little is shared";
   EXPECT_FALSE(forbidden(0.5, 0.03, kNone)) << "sure by itself";
+  EXPECT_TRUE(forbidden(0.5, 0.03, kNone, 0.3)) << "sure, but of what is everywhere";
   EXPECT_TRUE(forbidden(0.7, 0.1, kNone)) << "too much for any pair";
 }
 

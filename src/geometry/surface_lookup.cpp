@@ -52,8 +52,7 @@ SurfaceLookup::SurfaceLookup(std::span<const Eigen::Vector3f> points, float cell
   std::vector<float> nearest(512);             // squared, of each cell
   std::array<std::vector<float>, 3> sq_along;  // of the cells' centres about a point, along each axis
   for (auto& of_axis : sq_along) of_axis.resize(2 * static_cast<std::size_t>(reach_cells) + 1);
-  const Eigen::Array3i limit(static_cast<int>(size_[0]) * 8, static_cast<int>(size_[1]) * 8,
-                             static_cast<int>(size_[2]) * 8);
+  const Eigen::Array3i limit = end_.array().cast<int>();
   const float reach_m = cell_m * (static_cast<float>(reach_cells) + 0.5f), sq_reach = reach_m * reach_m;
   const float beyond_reach = std::nextafter(sq_reach, std::numeric_limits<float>::infinity());
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -8,7 +8,7 @@ namespace isthmus {
 
 PoseCheck check_pose(const ScanModel& source, const ScanModel& target, const Transform& target_from_source) {
   constexpr std::size_t kStride = 4;  // of the points
-  const Pose3f pose{target_from_source.linear().cast<float>(), target_from_source.translation().cast<float>()};
+  const Pose3f pose = pose3f(target_from_source);
   const DirectedScore forward = score_direction(source, target, pose, {}, kStride, false);
   const DirectedScore backward = score_direction(target, source, pose.inverse(), {}, kStride, false);
   PoseCheck check;

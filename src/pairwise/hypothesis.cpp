@@ -30,26 +30,24 @@ float tolerance_m(const ScanModel& model, std::int32_t point) {
 Profile profile(const ScanModel& from, const ScanModel& to, const Transform& to_from,
                 std::span<const std::uint32_t> sample, float widened_m = 0) {
   constexpr float kMinFacing = 0.5f, kFreeToleranceVoxels = 1.5f;
-  const Pose3f pose{to_from.linear().cast<float>(), to_from.translation().cast<float>()};
+  const Pose3f pose = pose3f(to_from);
   Profile out;
   out.support.assign(sample.size(), 0.0f);
   std::size_t contradicted = 0, against = 0;
-  for_each_lookup(
-      from, to, to.fine, pose, sample.size(), [&](std::size_t k) { return sample[k]; },
-      [&](std::size_t k, const Eigen::Vector3f& p, std::int32_t j) {
-        if (j < 0) {
-          contradicted += to.seen_through(p, kFreeToleranceVoxels * to.voxel_m);
-          return;
-        }
-        const Eigen::Vector3f& n = to.normals[j];
-        const float facing = n.dot(pose.rotation * from.normals[sample[k]]);
-        if (facing < -kMinFacing) ++against;
-        if (facing < kMinFacing) return;
-        const float ratio = n.dot(p - to.points[j]) / (tolerance_m(to, j) + widened_m);
-        if (!(ratio * ratio < 1)) return;
-        out.support[k] = 1 - ratio * ratio;
-        out.stiffness.noalias() += out.support[k] * n * n.transpose();
-      });
+  for_each_lookup(from, to, to.fine, pose, sample, [&](std::size_t k, const Eigen::Vector3f& p, std::int32_t j) {
+    if (j < 0) {
+      contradicted += to.seen_through(p, kFreeToleranceVoxels * to.voxel_m);
+      return;
+    }
+    const Eigen::Vector3f& n = to.normals[j];
+    const float facing = n.dot(pose.rotation * from.normals[sample[k]]);
+    if (facing < -kMinFacing) ++against;
+    if (facing < kMinFacing) return;
+    const float ratio = n.dot(p - to.points[j]) / (tolerance_m(to, j) + widened_m);
+    if (!(ratio * ratio < 1)) return;
+    out.support[k] = 1 - ratio * ratio;
+    out.stiffness.noalias() += out.support[k] * n * n.transpose();
+  });
   const double scale = sample.empty() ? 0.0 : 1.0 / static_cast<double>(sample.size());
   out.contradiction = static_cast<double>(contradicted) * scale;
   out.against = static_cast<double>(against) * scale;
@@ -128,16 +126,24 @@ double upright_factor(const ScanModel& source, const ScanModel& target, const Tr
   return std::max(kLeast, std::exp(-0.5 * beyond * beyond));
 }
 
+// What the evidence of `h` and its profiles is worth.
+double score_of(const ScanModel& source, const ScanModel& target, const Hypothesis& h, const Profile& forward,
+                const Profile& backward, const Weighing& weighing) {
+  return combined_support(h) * (weighing.free_space ? free_space_factor(h) : 1.0) *
+         (weighing.upright ? upright_factor(source, target, h.target_from_source) : 1.0) *
+         (weighing.observed ? observed_factor(forward, backward, h.target_from_source) : 1.0);
+}
+
 // The score of one pose alone, every point weighing the same.
 double score_alone(const ScanModel& source, const ScanModel& target, std::span<const std::uint32_t> from,
                    std::span<const std::uint32_t> to, const Transform& target_from_source, float widened_m = 0) {
   const Profile forward = profile(source, target, target_from_source, from, widened_m),
                 backward = profile(target, source, target_from_source.inverse(), to, widened_m);
   Hypothesis h;
+  h.target_from_source = target_from_source;
   h.source = summary(forward, std::vector<float>(from.size(), 1.0f));
   h.target = summary(backward, std::vector<float>(to.size(), 1.0f));
-  return combined_support(h) * free_space_factor(h) * upright_factor(source, target, target_from_source) *
-         observed_factor(forward, backward, target_from_source);
+  return score_of(source, target, h, forward, backward, {});
 }
 
 // Mean of the source points that lie on the target's surface, and how far they reach from it.
@@ -377,10 +383,7 @@ void weigh(const ScanModel& source, const ScanModel& target, const Weighing& wei
     Hypothesis& h = hypotheses[k];
     h.source = summary(h.profiles->forward, from_weight);
     h.target = summary(h.profiles->backward, to_weight);
-    h.score =
-        combined_support(h) * (weighing.free_space ? free_space_factor(h) : 1.0) *
-        (weighing.upright ? upright_factor(source, target, h.target_from_source) : 1.0) *
-        (weighing.observed ? observed_factor(h.profiles->forward, h.profiles->backward, h.target_from_source) : 1.0);
+    h.score = score_of(source, target, h, h.profiles->forward, h.profiles->backward, weighing);
   }
   std::stable_sort(hypotheses.begin(), hypotheses.end(),
                    [](const auto& a, const auto& b) { return a.score > b.score; });

@@ -100,7 +100,7 @@ bool forbidden_by_free_space(const PairResult& result) {
   constexpr double kSure = 0.95, kLeastOverlap = 0.1, kLittle = 0.3, kMuch = 0.5, kLimitOfLittle = 0.04,
                    kLimitOfMuch = 0.015;
   // Halls of equal bays are sure of the wrong bay: but what supports them there supports other hypotheses as well. Of
-  // 142 such poses beyond the limit 2 were right; of streets with passers-by, beyond it too, all have more than 0.7.
+  // 138 such poses beyond the limit 2 were right; of streets with passers-by, beyond it too, all have more than 0.7.
   constexpr double kCommonplace = 0.5;
   const bool commonplace = e.rare_support < kCommonplace * e.support;
   if ((result.probability > kSure && !commonplace) || result.overlap < kLeastOverlap) return false;

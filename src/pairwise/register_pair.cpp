@@ -168,7 +168,7 @@ std::vector<std::uint32_t> overlap_points(const ScanModel& from, const ScanModel
                                           std::size_t max_points) {
   std::vector<std::uint32_t> all(from.points.size());
   for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
-  const Pose3f pose{to_from.linear().cast<float>(), to_from.translation().cast<float>()};
+  const Pose3f pose = pose3f(to_from);
   const PointVerdicts verdicts = judge_points(from, to, pose, all, true);
   std::vector<std::uint32_t> inside;
   for (const std::uint32_t i : all)
@@ -262,12 +262,6 @@ void climb_best(const ScanModel& source, const ScanModel& target, std::vector<Hy
   });
 }
 
-Transform transform_of(const Pose3f& pose) {
-  Transform t = Transform::Identity();
-  t.linear() = pose.rotation.cast<double>(), t.translation() = pose.translation.cast<double>();
-  return t;
-}
-
 std::vector<Transform> transforms_of(const std::vector<Hypothesis>& hypotheses) {
   std::vector<Transform> out;
   for (const auto& h : hypotheses) out.push_back(h.target_from_source);
@@ -305,7 +299,7 @@ void fill_information(const ScanModel& source, const ScanModel& target, const Tr
 void fill_shares(const ScanModel& source, const ScanModel& target, const Transform& t, PairEvidence& evidence) {
   constexpr std::array<float, 2> kBounds = {0.006f, 0.020f};
   constexpr float kMinFacing = 0.5f;
-  const Pose3f pose{t.linear().cast<float>(), t.translation().cast<float>()};
+  const Pose3f pose = pose3f(t);
   std::size_t faced = 0;
   std::array<std::size_t, 2> under{};
   for (std::size_t i = 0; i < source.points.size(); ++i) {
@@ -555,8 +549,7 @@ PairResult register_pair(const ScanProduct& source_product, const ScanProduct& t
   Hypothesis best = hypotheses.front();
   constexpr std::size_t kFinalPoints = 20000;
   polish_closely_unless_worse(fine_source, fine_target, kFinalPoints, 5, best);
-  const Pose3f pose{best.target_from_source.linear().cast<float>(),
-                    best.target_from_source.translation().cast<float>()};
+  const Pose3f pose = pose3f(best.target_from_source);
   const DirectedScore forward = score_direction(source, target, pose, {}, 1, false);
   const DirectedScore backward = score_direction(target, source, pose.inverse(), {}, 1, false);
   result.target_from_source = best.target_from_source;

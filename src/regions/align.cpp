@@ -16,16 +16,14 @@ template <class F>
 void for_each_faced_plane(const ScanModel& source, const ScanModel& target, const Transform& target_from_source,
                           std::span<const std::uint32_t> sample, const SurfaceLookup& lookup, float gate_m, F&& f) {
   constexpr float kMinFacing = 0.5f;
-  const Pose3f pose{target_from_source.linear().cast<float>(), target_from_source.translation().cast<float>()};
-  for_each_lookup(
-      source, target, lookup, pose, sample.size(), [&](std::size_t k) { return sample[k]; },
-      [&](std::size_t k, const Eigen::Vector3f& p, std::int32_t j) {
-        if (j < 0 || target.variation[j] >= 1.0f) return;
-        const Eigen::Vector3f& n = target.normals[j];
-        if (n.dot(pose.rotation * source.normals[sample[k]]) < kMinFacing) return;
-        const float r = n.dot(p - target.points[j]);
-        if (r * r < gate_m * gate_m) f(p, n, r);
-      });
+  const Pose3f pose = pose3f(target_from_source);
+  for_each_lookup(source, target, lookup, pose, sample, [&](std::size_t k, const Eigen::Vector3f& p, std::int32_t j) {
+    if (j < 0 || target.variation[j] >= 1.0f) return;
+    const Eigen::Vector3f& n = target.normals[j];
+    if (n.dot(pose.rotation * source.normals[sample[k]]) < kMinFacing) return;
+    const float r = n.dot(p - target.points[j]);
+    if (r * r < gate_m * gate_m) f(p, n, r);
+  });
 }
 
 }  // namespace

@@ -9,6 +9,20 @@
 
 namespace isthmus {
 
+float ranking_score(const DirectedScore& a, const DirectedScore& b) {
+  constexpr float kContradictionWeight = 5;
+  return std::min(a.support, b.support) + 0.25f * std::max(a.support, b.support) -
+         kContradictionWeight * 0.5f * (a.contradiction + b.contradiction);
+}
+
+namespace {
+
+// Source points spread over the scan, nearest to a region's centre first.
+struct GrowthOrder {
+  std::vector<std::uint32_t> points;
+  std::vector<float> distance_m;
+};
+
 GrowthOrder growth_order(const ScanModel& source, std::uint32_t region, const GrowOptions& options) {
   const Eigen::Vector3f& centre = source.regions.regions[region].centre;
   // Denser near the seed: half of the budget goes to its surroundings.
@@ -24,20 +38,11 @@ GrowthOrder growth_order(const ScanModel& source, std::uint32_t region, const Gr
   return order;
 }
 
-float ranking_score(const DirectedScore& a, const DirectedScore& b) {
-  constexpr float kContradictionWeight = 5;
-  return std::min(a.support, b.support) + 0.25f * std::max(a.support, b.support) -
-         kContradictionWeight * 0.5f * (a.contradiction + b.contradiction);
-}
-
-GrownOverlap grow(const ScanModel& source, const ScanModel& target, const Seed& seed, const GrowthOrder& order,
-                  const GrowOptions& options) {
+GrownOverlap grow_in_order(const ScanModel& source, const ScanModel& target, const Seed& seed, const GrowthOrder& order,
+                           const GrowOptions& options) {
   const Eigen::Vector3f centre = source.regions.regions[seed.source_region].centre;
   const std::vector<float>& distance = order.distance_m;
-  const Pose3f start = seed.target_from_source(source);
-  Transform t = Transform::Identity();
-  t.linear() = start.rotation.cast<double>();
-  t.translation() = start.translation.cast<double>();
+  Transform t = transform_of(seed.target_from_source(source));
   GrownOverlap out;
   const float voxel = source.voxel_m;
   float radius = options.start_radius_voxels * voxel;
@@ -62,7 +67,7 @@ GrownOverlap grow(const ScanModel& source, const ScanModel& target, const Seed& 
     out.rms_m = std::sqrt(equations.sq_residual_sum / std::max(equations.weight, 1e-12));
   }
   out.target_from_source = orthonormalised(t);
-  const Pose3f pose{out.target_from_source.linear().cast<float>(), out.target_from_source.translation().cast<float>()};
+  const Pose3f pose = pose3f(out.target_from_source);
   const auto stride = [](const ScanModel& m) { return std::max<std::size_t>(1, m.points.size() / 1200); };
   out.source_in_target = score_direction(source, target, pose, {}, stride(source), false);
   out.target_in_source = score_direction(target, source, pose.inverse(), {}, stride(target), false);
@@ -70,8 +75,10 @@ GrownOverlap grow(const ScanModel& source, const ScanModel& target, const Seed& 
   return out;
 }
 
+}  // namespace
+
 GrownOverlap grow(const ScanModel& source, const ScanModel& target, const Seed& seed, const GrowOptions& options) {
-  return grow(source, target, seed, growth_order(source, seed.source_region, options), options);
+  return grow_in_order(source, target, seed, growth_order(source, seed.source_region, options), options);
 }
 
 std::vector<GrownOverlap> grow_all(const ScanModel& source, const ScanModel& target, std::span<const Seed> seeds,
@@ -85,7 +92,7 @@ std::vector<GrownOverlap> grow_all(const ScanModel& source, const ScanModel& tar
                      [&](std::size_t k) { orders[grown_from[k]] = growth_order(source, grown_from[k], options); });
   std::vector<GrownOverlap> out(seeds.size());
   parallel_for_index(seeds.size(), 4, [&](std::size_t k) {
-    out[k] = grow(source, target, seeds[k], orders[seeds[k].source_region], options);
+    out[k] = grow_in_order(source, target, seeds[k], orders[seeds[k].source_region], options);
   });
   return out;
 }

@@ -1,7 +1,6 @@
 // Growth of the complete overlap from an initial sub-region.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -25,21 +24,11 @@ struct GrownOverlap {
   double rms_m = 0;
 };
 
-/// Source points spread over the scan, nearest to a region's centre first: the order in which its growth takes them.
-struct GrowthOrder {
-  std::vector<std::uint32_t> points;
-  std::vector<float> distance_m;
-};
-GrowthOrder growth_order(const ScanModel& source, std::uint32_t region, const GrowOptions& options);
-
 /// Aligns the neighbourhood of the seed's region, then ever wider ones, each step point-to-plane on what faces the
 /// target's surface, until the whole scan is covered: the rotation error shrinks before far points may have a say.
-/// `order`: growth_order() of the seed's region with the same options; seeds of one region share it.
-GrownOverlap grow(const ScanModel& source, const ScanModel& target, const Seed& seed, const GrowthOrder& order,
-                  const GrowOptions& options);
 GrownOverlap grow(const ScanModel& source, const ScanModel& target, const Seed& seed, const GrowOptions& options);
 
-/// grow() of each seed, the order of each region made once.
+/// grow() of each seed; seeds of one region share the order in which its points are taken.
 std::vector<GrownOverlap> grow_all(const ScanModel& source, const ScanModel& target, std::span<const Seed> seeds,
                                    const GrowOptions& options);
 

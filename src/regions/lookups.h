@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "regions/overlap_score.h"
 #include "regions/scan_model.h"
@@ -31,6 +32,14 @@ void for_each_lookup(const ScanModel& from, const ScanModel& to, const SurfaceLo
     }
     for (std::size_t b = 0; b < n; ++b) f(first + b, moved[b], near[b]);
   }
+}
+
+/// The same for the points that `sample` names.
+template <class F>
+void for_each_lookup(const ScanModel& from, const ScanModel& to, const SurfaceLookup& lookup, const Pose3f& to_from,
+                     std::span<const std::uint32_t> sample, F&& f) {
+  for_each_lookup(
+      from, to, lookup, to_from, sample.size(), [&](std::size_t k) { return sample[k]; }, f);
 }
 
 }  // namespace isthmus

@@ -29,11 +29,10 @@ float tolerance_of(const ScanModel& to, bool coarse) {
 PointVerdicts judge_points(const ScanModel& from, const ScanModel& to, const Pose3f& to_from,
                            std::span<const std::uint32_t> sample, bool coarse) {
   PointVerdicts out(sample.size());
-  for_each_lookup(
-      from, to, lookup_of(to, coarse), to_from, sample.size(), [&](std::size_t k) { return sample[k]; },
-      [&](std::size_t k, const Eigen::Vector3f& p, std::int32_t j) {
-        out[k] = judge(from, to, to_from, sample[k], p, j, tolerance_of(to, coarse));
-      });
+  for_each_lookup(from, to, lookup_of(to, coarse), to_from, sample,
+                  [&](std::size_t k, const Eigen::Vector3f& p, std::int32_t j) {
+                    out[k] = judge(from, to, to_from, sample[k], p, j, tolerance_of(to, coarse));
+                  });
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/transform.h"
 #include "regions/scan_model.h"
 
 namespace isthmus {
@@ -17,6 +18,13 @@ struct Pose3f {
   [[nodiscard]] Eigen::Vector3f operator*(const Eigen::Vector3f& p) const { return rotation * p + translation; }
   [[nodiscard]] Pose3f inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation)}; }
 };
+
+inline Pose3f pose3f(const Transform& t) { return {t.linear().cast<float>(), t.translation().cast<float>()}; }
+inline Transform transform_of(const Pose3f& pose) {
+  Transform t = Transform::Identity();
+  t.linear() = pose.rotation.cast<double>(), t.translation() = pose.translation.cast<double>();
+  return t;
+}
 
 /// Shares of the sampled points of one scan against the other.
 struct DirectedScore {

@@ -14,13 +14,12 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-// Sums over 3 x 3 cells of a square grid, three rows at a time: all of them would not stay in cache.
+// Sums over 3 x 3 cells of a square grid of 3 x 3 or more, three rows at a time: all of them would not stay in cache.
 class VoteSums {
  public:
   VoteSums(const std::vector<float>& votes, std::size_t n) : votes_(votes), n_(n) {
     for (auto* rows : {&across_, &sums_})
       for (std::vector<float>& row : *rows) row.assign(n, 0.0f);
-    if (n < 3) return;
     add_across(0), add_across(1), add_across(2);
     sum_up(1);
   }
@@ -172,7 +171,7 @@ std::vector<float> likely_turns(const GroundPlan& source, const GroundPlan& targ
 
 std::vector<PlanPose> heaviest_shifts(const ShiftVotes& votes, const std::vector<float>& turns, std::size_t per_turn,
                                       std::size_t keep) {
-  constexpr std::size_t kTogether = 12;
+  constexpr std::size_t kTogether = 12;  // turns counted in one grid
   std::vector<std::vector<PlanPose>> of_turn(turns.size());
   parallel_for_index((turns.size() + kTogether - 1) / kTogether, 1, [&](std::size_t part) {
     std::vector<float> grid = votes.grid();

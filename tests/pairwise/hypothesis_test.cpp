@@ -158,12 +158,7 @@ TEST(Weigh, APoseThatOnePlaneExplainsIsWorthATwentieth) {
     }
     return scores;
   };
-  testing::Scene floor;
-  floor.add_rectangle({-9, -9, -1.5}, {18, 0, 0}, {0, 18, 0});
-  testing::SamplingSetup setup;
-  setup.options.station = "origin";
-  const ScanProduct flat =
-      testing::product_of(testing::scan_scene(floor, pose_of({0, 0, 0}), {40000, 12, 0.002, 1}), 0.3, setup);
+  const ScanProduct flat = testing::bare_floor();
   const ScanModel model(flat.sampled, flat.features, flat.regions, ModelLevel::coarse);
   const auto on_floor = scores_of(model, model, pose_of({1, 2, 0}, {0, 0, 0.7}));
   ASSERT_GT(on_floor[0], 0.3);

@@ -17,6 +17,15 @@ inline ScanProduct product_of(const Points& points, double voxel_m, const Sampli
   return product;
 }
 
+/// A bare floor seen from a station above it: nothing stands on it.
+inline ScanProduct bare_floor() {
+  Scene floor;
+  floor.add_rectangle({-9, -9, -1.5}, {18, 0, 0}, {0, 18, 0});
+  SamplingSetup setup;
+  setup.options.station = "origin";
+  return product_of(scan_scene(floor, pose_of({0, 0, 0}), {40000, 12, 0.002, 1}), 0.3, setup);
+}
+
 /// Largest distance between where `a` and `b` put a point of the source (over its voxel points).
 inline double largest_displacement_m(const ScanProduct& source, const Transform& a, const Transform& b) {
   double largest = 0;

@@ -53,12 +53,7 @@ TEST(ColumnVotes, PostsInAPlainAreFoundByWhereTheyStand) {
 }
 
 TEST(ColumnVotes, NothingUprightNoSeedsAndTheSameForAnyNumberOfThreads) {
-  testing::Scene floor;
-  floor.add_rectangle({-9, -9, -1.5}, {18, 0, 0}, {0, 18, 0});
-  testing::SamplingSetup setup;
-  setup.options.station = "origin";
-  const ScanProduct flat =
-      testing::product_of(testing::scan_scene(floor, pose_of({0, 0, 0}), {40000, 12, 0.002, 1}), 0.3, setup);
+  const ScanProduct flat = testing::bare_floor();
   const ScanModel model(flat.sampled, flat.features, flat.regions, ModelLevel::coarse);
   EXPECT_TRUE(vote_seeds_by_columns(model, model, Eigen::Vector3f::UnitZ(), Eigen::Vector3f::UnitZ(), {}).empty());
 

@@ -52,7 +52,7 @@ TEST(Grow, AtTheTruthItStaysAndTellsTheOverlap) {
   EXPECT_GT(grown.rms_m, 0);
   EXPECT_LT(grown.rms_m, testing::kHallVoxel);
   const DirectedScore there =
-      score_direction(pair.source, pair.target, testing::pose3f(pair.data.target_from_source), {}, 1, false);
+      score_direction(pair.source, pair.target, pose3f(pair.data.target_from_source), {}, 1, false);
   EXPECT_NEAR(grown.source_in_target.support, there.support, 0.05);
   EXPECT_EQ(grown.score, ranking_score(grown.source_in_target, grown.target_in_source));
 }

@@ -17,15 +17,6 @@ struct HallPair {
   HallPair(const HallPair&) = delete;  // the lookups point into data
 };
 
-inline Pose3f pose3f(const Transform& t) { return {t.linear().cast<float>(), t.translation().cast<float>()}; }
-
-inline Transform transform_of(const Pose3f& pose) {
-  Transform t = Transform::Identity();
-  t.linear() = pose.rotation.cast<double>();
-  t.translation() = pose.translation.cast<double>();
-  return t;
-}
-
 inline std::vector<std::uint32_t> all_points(const ScanModel& model) {
   std::vector<std::uint32_t> all(model.points.size());
   for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;

@@ -9,7 +9,6 @@ namespace {
 
 using testing::all_points;
 using testing::HallPair;
-using testing::pose3f;
 using testing::pose_of;
 using testing::product_of;
 using testing::scan_scene;

@@ -20,7 +20,7 @@ struct Closeness {
 };
 
 Closeness closeness(const HallPair& pair, const Seed& seed) {
-  const Transform t = testing::transform_of(seed.target_from_source(pair.source));
+  const Transform t = transform_of(seed.target_from_source(pair.source));
   const Eigen::Vector3d centre = pair.source.regions.regions[seed.source_region].centre.cast<double>();
   return {displacement_m(t, pair.data.target_from_source, centre) / static_cast<double>(pair.source.voxel_m),
           rotation_angle_rad(t.linear().transpose() * pair.data.target_from_source.linear()) * 180 / 3.14159265};
@@ -109,7 +109,7 @@ TEST(Votes, RightMatchesGiveTheExactPose) {
     for (const Seed* s : best) {
       if (!s) continue;
       ++voted;
-      const Transform found = testing::transform_of(s->target_from_source(pair.source));
+      const Transform found = transform_of(s->target_from_source(pair.source));
       exact += rotation_angle_rad(found.linear().transpose() * t.linear()) < 0.05 &&
                displacement_m(found, t, pair.source.regions.regions[s->source_region].centre.cast<double>()) < 0.3;
     }

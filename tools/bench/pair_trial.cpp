@@ -21,7 +21,7 @@ constexpr double kNearDeg = 10;
 Eigen::Vector3d middle_of_overlap(const ScanModel& source, const ScanModel& target, const Transform& truth) {
   std::vector<std::uint32_t> all(source.points.size());
   for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
-  const Pose3f pose{truth.linear().cast<float>(), truth.translation().cast<float>()};
+  const Pose3f pose = pose3f(truth);
   const PointVerdicts verdicts = judge_points(source, target, pose, all, false);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   std::size_t n = 0;

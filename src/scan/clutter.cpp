@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <unordered_map>
 
 #include "base/parallel.h"
@@ -15,9 +16,7 @@ namespace {
 
 using Cell = Eigen::Matrix<std::int64_t, 3, 1>;
 
-// Blocks of 6 x 6 x 6 voxels in eight octants: a surface that crosses a block leaves octants empty, an even spread does
-// not.
-constexpr std::int64_t kHalfBlock = 3;
+// Blocks of voxels in eight octants: a surface that crosses a block leaves octants empty, an even spread does not.
 using Octants = std::array<std::uint32_t, 8>;
 
 struct Blocks {
@@ -34,32 +33,35 @@ Cell floored(const Eigen::Vector3f& p, double edge) {
 
 std::int64_t half_of(std::int64_t octant) { return octant >= 0 ? octant / 2 : (octant - 1) / 2; }
 
-// The middle 99 % of each coordinate: a few far points must not make the box endless. Empty if it is too large to
-// count.
-Blocks count_blocks(const OccupiedVoxels& voxels) {
-  constexpr std::size_t kMostBlocks = 4'000'000;
-  const auto& points = voxels.points;
-  const auto voxel_m = static_cast<double>(voxels.voxel_m);
-  const double half_edge = kHalfBlock * voxel_m;
-  Blocks blocks;
-  Cell high = Cell::Zero();
+// The middle 99 % of each coordinate: a few far points must not make the box endless.
+std::array<Eigen::Vector3f, 2> middle_box(std::span<const Eigen::Vector3f> points) {
+  std::array<Eigen::Vector3f, 2> box;
+  std::vector<float> values(points.size());
   for (int a = 0; a < 3; ++a) {
-    std::vector<float> values(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i][a];
     std::sort(values.begin(), values.end());
     const std::size_t cut = values.size() / 200;
-    const auto block_of = [&](float v) {
-      return half_of(static_cast<std::int64_t>(std::floor(static_cast<double>(v) / half_edge)));
-    };
-    blocks.low[a] = block_of(values[cut]), high[a] = block_of(values[values.size() - 1 - cut]);
+    box[0][a] = values[cut], box[1][a] = values[values.size() - 1 - cut];
   }
+  return box;
+}
+
+// Empty if the box is too large to count.
+Blocks count_blocks(const OccupiedVoxels& voxels, const std::array<Eigen::Vector3f, 2>& box, std::int64_t half_block) {
+  constexpr std::size_t kMostBlocks = 4'000'000;
+  const auto& points = voxels.points;
+  const double half_edge = static_cast<double>(half_block) * static_cast<double>(voxels.voxel_m);
+  const auto block_of = [&](const Eigen::Vector3f& p) -> Cell { return floored(p, half_edge).unaryExpr(&half_of); };
+  Blocks blocks;
+  blocks.low = block_of(box[0]);
+  const Cell high = block_of(box[1]);
   blocks.size = high - blocks.low + Cell::Ones();
   const double volume = blocks.size.cast<double>().prod();
   if (volume > static_cast<double>(kMostBlocks)) return {};
   blocks.octants.assign(static_cast<std::size_t>(volume), Octants{});
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Cell octant = floored(points[i], half_edge);
-    const Cell block(half_of(octant.x()), half_of(octant.y()), half_of(octant.z()));
+    const Cell block = octant.unaryExpr(&half_of);
     const Cell at = block - blocks.low;
     if ((at.array() < 0).any() || (at.array() >= blocks.size.array()).any()) continue;
     const Cell part = octant - 2 * block;
@@ -107,26 +109,18 @@ bool even(const Octants& o) {
   return chi_squared < kMostChiSquared;
 }
 
-}  // namespace
-
-double clutter_density(const OccupiedVoxels& voxels) {
+// Raw points a block of the air, if they float there evenly; 0 if not. Nothing if the middle block is empty: larger
+// ones may tell what little floats there from none.
+std::optional<double> points_a_block(const Blocks& blocks) {
   constexpr std::size_t kMinBlocks = 20;
-  constexpr double kBlockVoxels = 8.0 * kHalfBlock * kHalfBlock * kHalfBlock;
-  if (voxels.points.empty()) return 0;
-  const Blocks blocks = count_blocks(voxels);
-  if (blocks.octants.empty()) return 0;
   const std::vector<std::uint8_t> inside = between(blocks);
   std::vector<std::uint32_t> counts;
-  std::size_t all = 0;
   for (std::size_t i = 0; i < inside.size(); ++i)
-    if (inside[i]) {
-      ++all;
-      if (even(blocks.octants[i])) counts.push_back(sum(blocks.octants[i]));
-    }
+    if (inside[i] && even(blocks.octants[i])) counts.push_back(sum(blocks.octants[i]));
   if (counts.size() < kMinBlocks) return 0;
   std::sort(counts.begin(), counts.end());
   const double median = counts[counts.size() / 2];
-  if (median == 0) return 0;
+  if (median == 0) return std::nullopt;
   // Evenly spread: hardly a block is empty that should not be, and nearly all are as full as the middle one. Scans with
   // a tenth and more of clutter have 95 % alike and more; foliage, far ground and cars of clean ones up to 82 %.
   constexpr double kSpread = 3, kMinAlike = 0.9, kMaxHoles = 0.05;
@@ -141,7 +135,21 @@ double clutter_density(const OccupiedVoxels& voxels) {
   const auto n = static_cast<double>(counts.size());
   if (static_cast<double>(alike) < kMinAlike * n) return 0;
   if (static_cast<double>(empty) > (2 * std::exp(-median) + kMaxHoles) * n) return 0;
-  return total / static_cast<double>(alike) / kBlockVoxels;
+  return total / static_cast<double>(alike);
+}
+
+}  // namespace
+
+double clutter_density(const OccupiedVoxels& voxels) {
+  if (voxels.points.empty()) return 0;
+  const auto box = middle_box(voxels.points);
+  for (const std::int64_t half_block : {3, 6, 12}) {
+    const Blocks blocks = count_blocks(voxels, box, half_block);
+    if (blocks.octants.empty()) continue;
+    const std::optional<double> points = points_a_block(blocks);
+    if (points) return *points / (8.0 * static_cast<double>(half_block * half_block * half_block));
+  }
+  return 0;
 }
 
 std::uint32_t least_count_beyond_chance(double expected) {

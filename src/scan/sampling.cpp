@@ -1,9 +1,15 @@
 #include "scan/sampling.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 #include <unordered_set>
+
+#include "geometry/point_grid.h"
+#include "scan/clutter.h"
 
 namespace isthmus {
 
@@ -72,14 +78,18 @@ const config::OptionTable<SamplingOptions>& sampling_options_table() {
 
 namespace {
 
+constexpr std::size_t kMinProbed = 20;
+
+std::uint64_t cell_key(const Eigen::Vector3f& p, double voxel_m) {
+  const Eigen::Matrix<std::int64_t, 3, 1> c = (p.cast<double>() / voxel_m).array().floor().cast<std::int64_t>();
+  return static_cast<std::uint64_t>(c[0] & 0x1fffff) << 42 | static_cast<std::uint64_t>(c[1] & 0x1fffff) << 21 |
+         static_cast<std::uint64_t>(c[2] & 0x1fffff);
+}
+
 std::size_t occupied(const std::vector<Eigen::Vector3f>& points, double voxel_m) {
   std::unordered_set<std::uint64_t> cells;
   cells.reserve(points.size());
-  for (const auto& p : points) {
-    const Eigen::Matrix<std::int64_t, 3, 1> c = (p.cast<double>() / voxel_m).array().floor().cast<std::int64_t>();
-    cells.insert(static_cast<std::uint64_t>(c[0] & 0x1fffff) << 42 | static_cast<std::uint64_t>(c[1] & 0x1fffff) << 21 |
-                 static_cast<std::uint64_t>(c[2] & 0x1fffff));
-  }
+  for (const auto& p : points) cells.insert(cell_key(p, voxel_m));
   return cells.size();
 }
 
@@ -95,43 +105,153 @@ double robust_extent(const std::vector<Eigen::Vector3f>& points) {
   return size.norm();
 }
 
-}  // namespace
+struct ProbedSurface {
+  const std::vector<Eigen::Vector3f>& points;
+  double extent_m;
 
-Result<ScanScale> scale_of_probe(const PointChunk& probe, std::optional<std::uint64_t> num_points, int target_points) {
-  constexpr std::size_t kMinPoints = 20;
-  // A voxel should gather more than one raw point, or sampling keeps the scanner's pattern: at most this share of the
-  // raw points may remain.
-  constexpr double kMaxShareKept = 0.55;
-  // Surfaces of N voxels reach over sqrt(N) / 2 to 2 sqrt(N) of them. Foliage fills space: there 15,000 reached over
-  // 37, voxels of more than a metre, in which trunks are lost. Half of that finds them.
-  const double least_across = 0.5 * std::sqrt(static_cast<double>(target_points));
-  constexpr double kShrinking = 1.5;
-  std::vector<Eigen::Vector3f> points;
-  for (const auto& p : probe.points)
-    if (p.allFinite() && !p.isZero()) points.push_back(p);
-  if (points.size() < kMinPoints)
-    return fail("only " + std::to_string(points.size()) + " usable points", "",
-                "the scan is empty or holds no coordinates");
-  ScanScale scale;
-  scale.extent_m = robust_extent(points);
-  if (!(scale.extent_m > 0)) return fail("all points are the same", "", "check the file's coordinate columns");
   // Number of occupied voxels falls as the voxel grows: bisect its logarithm.
-  const auto voxel_for = [&](double wanted) {
-    double low = std::log(scale.extent_m * 1e-5), high = std::log(scale.extent_m * 2);
+  [[nodiscard]] double voxel_for(double wanted) const {
+    double low = std::log(extent_m * 1e-5), high = std::log(extent_m * 2);
     for (int step = 0; step < 16; ++step) {
       const double middle = 0.5 * (low + high);
       (static_cast<double>(occupied(points, std::exp(middle))) > wanted ? low : high) = middle;
     }
     return std::exp(high);
-  };
-  const auto probed = static_cast<double>(points.size());
-  scale.voxel_m = voxel_for(std::min(static_cast<double>(target_points), 0.3 * probed));
-  if (static_cast<double>(target_points) > 0.3 * probed)  // surfaces: the number of voxels goes with the inverse square
-    scale.voxel_m *= std::sqrt(0.3 * probed / target_points);
-  const double across = scale.extent_m / scale.voxel_m;
-  if (across < least_across) scale.voxel_m *= std::pow(across / least_across, kShrinking);
-  const bool whole = !num_points || static_cast<double>(*num_points) < 1.5 * probed;
-  scale.spacing_m = whole ? voxel_for(kMaxShareKept * probed) : 0;
+  }
+
+  [[nodiscard]] double voxel_for_target(int target_points) const {
+    // Surfaces of N voxels reach over sqrt(N) / 2 to 2 sqrt(N) of them. Foliage fills space: there 15,000 reached over
+    // 37, voxels of more than a metre, in which trunks are lost. Half of that finds them.
+    const double least_across = 0.5 * std::sqrt(static_cast<double>(target_points));
+    constexpr double kShrinking = 1.5;
+    const double enough = 0.3 * static_cast<double>(points.size());
+    double voxel_m = voxel_for(std::min(static_cast<double>(target_points), enough));
+    if (static_cast<double>(target_points) > enough)  // surfaces: the number of voxels goes with the inverse square
+      voxel_m *= std::sqrt(enough / target_points);
+    const double across = extent_m / voxel_m;
+    if (across < least_across) voxel_m *= std::pow(across / least_across, kShrinking);
+    return voxel_m;
+  }
+};
+
+struct Occupied {
+  std::vector<Eigen::Vector3f> means;
+  std::vector<std::uint32_t> counts;
+  std::vector<std::uint32_t> voxel_of_point;
+};
+
+// Voxels in the order of their first points.
+Occupied occupied_voxels(const std::vector<Eigen::Vector3f>& points, double voxel_m) {
+  Occupied out;
+  std::unordered_map<std::uint64_t, std::uint32_t> voxels;
+  voxels.reserve(points.size());
+  for (const auto& p : points) {
+    const auto [at, is_new] = voxels.try_emplace(cell_key(p, voxel_m), static_cast<std::uint32_t>(out.means.size()));
+    if (is_new) out.means.emplace_back(Eigen::Vector3f::Zero()), out.counts.push_back(0);
+    out.means[at->second] += p;
+    ++out.counts[at->second];
+    out.voxel_of_point.push_back(at->second);
+  }
+  for (std::size_t i = 0; i < out.means.size(); ++i) out.means[i] /= static_cast<float>(out.counts[i]);
+  return out;
+}
+
+// The probe without what floats in the air, told at this voxel or, where a room holds too few blocks of it, at finer
+// ones; empty if nothing floats there.
+std::vector<Eigen::Vector3f> without_clutter_at(const std::vector<Eigen::Vector3f>& points, double voxel_m) {
+  constexpr double kFinest = 0.2;
+  constexpr std::size_t kMinPointsAVoxel = 2;  // below it surfaces look like scattered points themselves
+  std::vector<Eigen::Vector3f> left;
+  for (double edge_m = voxel_m; left.empty() && edge_m > kFinest * voxel_m; edge_m /= 2) {
+    const Occupied voxels = occupied_voxels(points, edge_m);
+    if (points.size() < kMinPointsAVoxel * voxels.means.size()) break;
+    const OccupiedVoxels cells{voxels.means, voxels.counts, static_cast<float>(edge_m)};
+    const double density = clutter_density(cells);
+    if (density == 0) continue;
+    const std::vector<std::uint8_t> clutter = find_clutter(cells, density);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (!clutter[voxels.voxel_of_point[i]]) left.push_back(points[i]);
+  }
+  return left;
+}
+
+// A wall's thousand points fill few voxels, a thousand that float in the air fill a thousand: the voxel would grow
+// until they share some. What floats is left out at the voxel that all points give, which is too large, and again at
+// the one that is left then.
+std::vector<Eigen::Vector3f> without_clutter(const std::vector<Eigen::Vector3f>& points, int target_points) {
+  constexpr int kRounds = 3;
+  std::vector<Eigen::Vector3f> surface = points;
+  for (int round = 0; round < kRounds; ++round) {
+    const double extent_m = robust_extent(surface);
+    if (!(extent_m > 0)) break;
+    std::vector<Eigen::Vector3f> left =
+        without_clutter_at(points, ProbedSurface{surface, extent_m}.voxel_for_target(target_points));
+    if (left.size() < kMinProbed) break;
+    surface = std::move(left);
+  }
+  return surface;
+}
+
+// How far points stand off the surfaces they were measured on: at each of a thousand places the standard deviation
+// along the normal of the smallest neighbourhood that is flat (after Demantké, Mallet, David, Vallet 2011, section 3,
+// who choose the size by entropy); the middle one counts. 0 where hardly a place is flat at any size.
+double noise_m(const ProbedSurface& surface, double voxel_m) {
+  constexpr std::size_t kPlaces = 500;
+  constexpr double kGrowth = 1.4, kMaxShareOfExtent = 0.2;
+  constexpr float kFlat = 0.08f, kMinNeighbours = 30;
+  constexpr double kMinFlatShare = 0.1;
+  const std::vector<Eigen::Vector3f>& points = surface.points;
+  const PointGrid grid(points, static_cast<float>(2 * voxel_m));
+  const std::size_t step = std::max<std::size_t>(1, points.size() / kPlaces);
+  std::vector<float> deviations;
+  std::size_t places = 0;
+  for (std::size_t i = 0; i < points.size(); i += step) {
+    ++places;
+    for (double radius = voxel_m; radius < kMaxShareOfExtent * surface.extent_m; radius *= kGrowth) {
+      float n = 0;
+      Eigen::Vector3f first = Eigen::Vector3f::Zero();
+      Eigen::Matrix3f second = Eigen::Matrix3f::Zero();
+      grid.for_each_within(points[i], static_cast<float>(radius), [&](std::uint32_t j, float) {
+        const Eigen::Vector3f d = points[j] - points[i];
+        n += 1, first += d, second += d * d.transpose();
+      });
+      if (n < kMinNeighbours) continue;
+      const Eigen::Vector3f mean = first / n;
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+      solver.computeDirect(second / n - mean * mean.transpose(), Eigen::EigenvaluesOnly);
+      const float smallest = std::max(0.0f, solver.eigenvalues()[0]);
+      if (smallest >= kFlat * solver.eigenvalues().sum()) continue;
+      deviations.push_back(std::sqrt(smallest));
+      break;
+    }
+  }
+  if (static_cast<double>(deviations.size()) < kMinFlatShare * static_cast<double>(places)) return 0;
+  std::sort(deviations.begin(), deviations.end());
+  return static_cast<double>(deviations[deviations.size() / 2]);
+}
+
+}  // namespace
+
+Result<ScanScale> scale_of_probe(const PointChunk& probe, std::optional<std::uint64_t> num_points, int target_points) {
+  // A voxel should gather more than one raw point, or sampling keeps the scanner's pattern: at most this share of the
+  // raw points may remain.
+  constexpr double kMaxShareKept = 0.55;
+  std::vector<Eigen::Vector3f> points;
+  for (const auto& p : probe.points)
+    if (p.allFinite() && !p.isZero()) points.push_back(p);
+  if (points.size() < kMinProbed)
+    return fail("only " + std::to_string(points.size()) + " usable points", "",
+                "the scan is empty or holds no coordinates");
+  const bool whole = !num_points || static_cast<double>(*num_points) < 1.5 * static_cast<double>(points.size());
+  if (!(robust_extent(points) > 0)) return fail("all points are the same", "", "check the file's coordinate columns");
+  const std::vector<Eigen::Vector3f> surface = without_clutter(points, target_points);
+  ScanScale scale;
+  scale.extent_m = robust_extent(surface);
+  const ProbedSurface probed{surface, scale.extent_m};
+  scale.voxel_m = probed.voxel_for_target(target_points);
+  constexpr double kDeviations = 3;  // a finer voxel would keep the noise as geometry
+  scale.voxel_m = std::max(scale.voxel_m, kDeviations * noise_m(probed, scale.voxel_m));
+  scale.spacing_m = whole ? probed.voxel_for(kMaxShareKept * static_cast<double>(surface.size())) : 0;
   return scale;
 }
 

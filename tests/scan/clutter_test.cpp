@@ -17,26 +17,12 @@ namespace {
 using testing::Points;
 using testing::pose_of;
 using testing::sampled;
+using testing::with_clutter;
 
 constexpr double kVoxel = 0.2;
 
 Points hall_points(std::size_t num_rays = 60000) {
   return testing::scan_scene(testing::furnished_hall(1), pose_of({0, 0, 1.7}), {num_rays, 1e6, 0.004, 1});
-}
-
-// So many points spread evenly over the box of the others that they are this share of all.
-Points with_clutter(Points points, double share, std::uint64_t seed = 7) {
-  Eigen::AlignedBox3f box;
-  for (const auto& p : points) box.extend(p);
-  Rng rng(seed);
-  const auto added = static_cast<std::size_t>(share / (1 - share) * static_cast<double>(points.size()));
-  for (std::size_t k = 0; k < added; ++k) {
-    Eigen::Vector3f p;
-    for (int a = 0; a < 3; ++a)
-      p[a] = static_cast<float>(rng.uniform(static_cast<double>(box.min()[a]), static_cast<double>(box.max()[a])));
-    points.push_back(p);
-  }
-  return points;
 }
 
 double density_of(const Points& points, float voxel_m) {
@@ -65,6 +51,21 @@ TEST(Clutter, TheDensityOfAnEvenSpreadIsFound) {
     Points turned = testing::moved(points, pose_of({3, -100, 7}, {0.7, -0.4, 1.1}));
     EXPECT_NEAR(density_of(turned, 0.1f), density, 0.3 * density) << "in a box askew to the axes";
   }
+}
+
+// One voxel in a thousand: most blocks of 6 voxels hold nothing.
+TEST(Clutter, ThinSpreadsAreFoundInLargerBlocks) {
+  const Points hall = testing::scan_scene(testing::furnished_hall(1), pose_of({0, 0, 1.7}), {60000, 1e6, 0.004, 1});
+  const SampledScan clean = sampled(hall, 0.1);
+  Eigen::AlignedBox3f box;
+  for (const auto& p : clean.points) box.extend(p);
+  for (const double density : {1e-3, 3e-3}) {
+    Points points = clean.points;
+    const double added = density * static_cast<double>(box.volume()) / 1e-3;
+    points = with_clutter(points, added / (added + static_cast<double>(points.size())));
+    EXPECT_NEAR(density_of(points, 0.1f) / density, 1, 0.3) << density;
+  }
+  EXPECT_EQ(density_of(clean.points, 0.1f), 0);
 }
 
 TEST(Clutter, SurfacesAloneHaveNone) {

@@ -1,6 +1,7 @@
 // Points to a SampledScan in one call, in chunks of any size.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <stdexcept>
 
 #include "pairwise/synthetic_scene.h"
@@ -27,6 +28,21 @@ inline SampledScan sampled(const Points& points, double voxel_m, const SamplingS
   Result<SampledScan> scan = try_sampling(points, voxel_m, setup);
   if (!scan) throw std::runtime_error(scan.error().text());
   return *std::move(scan);
+}
+
+// So many points spread evenly over the box of the others that they are this share of all.
+inline Points with_clutter(Points points, double share, std::uint64_t seed = 7) {
+  Eigen::AlignedBox3f box;
+  for (const auto& p : points) box.extend(p);
+  Rng rng(seed);
+  const auto added = static_cast<std::size_t>(share / (1 - share) * static_cast<double>(points.size()));
+  for (std::size_t k = 0; k < added; ++k) {
+    Eigen::Vector3f p;
+    for (int a = 0; a < 3; ++a)
+      p[a] = static_cast<float>(rng.uniform(static_cast<double>(box.min()[a]), static_cast<double>(box.max()[a])));
+    points.push_back(p);
+  }
+  return points;
 }
 
 inline SamplingSetup station_option(const std::string& word) {

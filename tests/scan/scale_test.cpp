@@ -61,6 +61,31 @@ TEST(Scale, AThousandTimesTheSceneIsAThousandTimesTheVoxel) {
   EXPECT_LT(ratio, 1300);
 }
 
+TEST(Scale, WhatFloatsInTheAirDoesNotWidenTheVoxel) {
+  const Points points = hall_points(100000);
+  const double clean = scale_of_probe(chunk_of(points), points.size(), 6000)->voxel_m;
+  for (const double share : {0.1, 0.3, 0.5}) {
+    const Points cluttered = testing::with_clutter(points, share);
+    const auto scale = scale_of_probe(chunk_of(cluttered), cluttered.size(), 6000);
+    ASSERT_TRUE(scale);
+    EXPECT_NEAR(std::log(scale->voxel_m / clean), 0, std::log(1.3)) << share;
+    EXPECT_NEAR(scale->extent_m, scale_of_probe(chunk_of(points), points.size(), 6000)->extent_m,
+                0.2 * scale->extent_m);
+  }
+}
+
+TEST(Scale, TheVoxelIsNotFinerThanTheNoise) {
+  const double clean = scale_of_probe(chunk_of(hall_points()), 40000, 15000)->voxel_m;
+  for (const double noise_m : {0.01, 0.1, 0.2}) {
+    const Points points = scan_scene(furnished_hall(5), pose_of({0, 0, 1.7}), {40000, 1e6, noise_m, 3});
+    const double voxel_m = scale_of_probe(chunk_of(points), points.size(), 15000)->voxel_m;
+    if (3 * noise_m < clean)
+      EXPECT_NEAR(std::log(voxel_m / clean), 0, std::log(1.15)) << noise_m;
+    else
+      EXPECT_NEAR(std::log(voxel_m / (3 * noise_m)), 0, std::log(1.4)) << noise_m;
+  }
+}
+
 TEST(Scale, TheVoxelOfASurveyDoesNotDependOnTheOrderOfItsScans) {
   std::vector<ScanScale> scales;
   Rng rng(7);

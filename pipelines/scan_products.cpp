@@ -15,9 +15,8 @@ namespace isthmus::pipelines {
 namespace {
 
 constexpr std::size_t kChunkPoints = std::size_t{1}
-                                     << 16;        // 1.2 MB with intensity and colour: fits the second-level cache
-constexpr const char* kSummaryVersion = "1";       // of summarise() below; what goes into it is in the regions' key
-constexpr std::size_t kCandidateKeypoints = 1000;  // 264 kB a scan: 500 scans' descriptors in 132 MB at the barrier
+                                     << 16;   // 1.2 MB with intensity and colour: fits the second-level cache
+constexpr const char* kSummaryVersion = "2";  // of summarise() below; what goes into it is in the regions' key
 constexpr std::size_t kOutlinePoints = 2000;
 
 class Stopwatch {
@@ -101,17 +100,22 @@ std::pair<std::vector<Eigen::Vector3f>, float> outline_of(const SampledScan& sca
   return {std::move(points), cell};
 }
 
-std::vector<float> spread_descriptors(const FeatureCloud& features) {
-  const std::size_t count = features.keypoints.size();
-  if (count <= kCandidateKeypoints) return features.descriptors;
-  std::vector<float> out;
-  out.reserve(kCandidateKeypoints * features.dimension);
-  for (std::size_t i = 0; i < kCandidateKeypoints; ++i) {
-    const auto row = features.descriptors.begin() +
-                     static_cast<std::ptrdiff_t>(i * count / kCandidateKeypoints * features.dimension);
-    out.insert(out.end(), row, row + features.dimension);
-  }
+// Rows of unit length and without negative values: a byte a value is enough to say on which side of a plane they lie.
+std::vector<std::uint8_t> coarse_descriptors(const FeatureCloud& features) {
+  std::vector<std::uint8_t> out(features.descriptors.size());
+  std::ranges::transform(features.descriptors, out.begin(), [](float value) {
+    return static_cast<std::uint8_t>(std::lround(255 * std::clamp(value, 0.0f, 1.0f)));
+  });
   return out;
+}
+
+std::vector<float> heights_of_keypoints(const SampledScan& scan, const FeatureCloud& features) {
+  std::vector<float> heights;
+  if (features.axes.empty() || !features.axes.front().upright) return heights;
+  const Eigen::Vector3f up = features.axes.front().direction / static_cast<float>(scan.voxel_m);
+  for (const std::uint32_t keypoint : features.keypoints)
+    heights.push_back(up.dot(scan.points[keypoint] - scan.station));
+  return heights;
 }
 
 std::string replaced(std::string text, const std::string& old_text, const std::string& new_text) {
@@ -173,7 +177,8 @@ ScanSummary summarise(const ScanProduct& product) {
   if (!scan.points.empty()) out.radius_m = std::sqrt(sq_sum / static_cast<double>(scan.points.size()));
   out.product_bytes = store::to_bytes(product).size();
   out.dimension = product.features.dimension;
-  out.descriptors = spread_descriptors(product.features);
+  out.descriptors = coarse_descriptors(product.features);
+  out.heights_voxels = heights_of_keypoints(scan, product.features);
   std::tie(out.outline, out.outline_cell_m) = outline_of(scan);
   out.notes = scan.notes;
   return out;

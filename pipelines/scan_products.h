@@ -57,16 +57,17 @@ struct ScanSummary {
   double radius_m = 0;                               ///< root mean square distance from the centre
   std::uint64_t product_bytes = 0;                   ///< of the three products together
   std::uint32_t dimension = 0;
-  std::vector<float> descriptors;        ///< of keypoints spread over the scan, enough for choosing pairs
-  std::vector<Eigen::Vector3f> outline;  ///< points spread over the scan, local frame, for maps and predicted overlaps
-  float outline_cell_m = 0;              ///< one outline point per cell of this size
+  std::vector<std::uint8_t> descriptors;  ///< of the keypoints, 255 for 1: enough for choosing pairs
+  std::vector<float> heights_voxels;      ///< of the keypoints above the station; empty if the vertical is unknown
+  std::vector<Eigen::Vector3f> outline;   ///< points spread over the scan, local frame, for maps and predicted overlaps
+  float outline_cell_m = 0;               ///< one outline point per cell of this size
   std::vector<std::string> notes;
   template <class F>
   void fields(F&& f) {
     f(voxel_m), f(local_origin_in_scan), f(station_kind), f(station), f(station_in_file), f(spacing_m), f(num_read),
         f(num_dropped);
     f(num_points), f(num_keypoints), f(num_regions), f(centre), f(radius_m), f(product_bytes), f(dimension);
-    f(descriptors), f(outline), f(outline_cell_m), f(notes);
+    f(descriptors), f(heights_voxels), f(outline), f(outline_cell_m), f(notes);
   }
 };
 ScanSummary summarise(const ScanProduct& product);

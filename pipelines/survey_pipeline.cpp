@@ -226,11 +226,11 @@ class SurveyGraph {
     };
     for (const ScanOutcome& scan : out_.scans) {
       const std::string& name = scan.ref.name;
-      if (scan.missing) inputs.push_back({scan.id, name, {}, 0, position_of(name)});  // to look ahead
+      if (scan.missing) inputs.push_back({scan.id, name, {}, position_of(name)});  // to look ahead
       if (!scan.summary || scan.error) continue;
       const ScanSummary& summary = *scan.summary;
       const std::size_t count = summary.dimension == 0 ? 0 : summary.descriptors.size() / summary.dimension;
-      inputs.push_back({scan.id, name, summary.descriptors, count, position_of(name)});
+      inputs.push_back({scan.id, name, {summary.descriptors, count, summary.heights_voxels}, position_of(name)});
     }
     const ModelSources sources = model_sources();
     CandidateGraph graph =
@@ -244,7 +244,9 @@ class SurveyGraph {
     for (const std::string& warning : graph.warnings) warn(warning);
     rounds_ = std::make_unique<PairRounds>(std::move(graph), settings_.candidates, inputs.size());
     for (ScanOutcome& scan : out_.scans) {
-      if (scan.summary) std::vector<float>().swap(scan.summary->descriptors);  // needed no more
+      if (!scan.summary) continue;  // needed no more
+      std::vector<std::uint8_t>().swap(scan.summary->descriptors);
+      std::vector<float>().swap(scan.summary->heights_voxels);
     }
   }
 

@@ -105,7 +105,7 @@ def plot(args):
             axis.grid(alpha=0.3)
             if kind == "density":
                 axis.set_xscale("log")
-            if row is axes[-1]:
+            if name == sets[-1]:
                 axis.set_xlabel(title)
         row[0].set_ylabel(f"{name}\nright, %")
     axes[0][0].legend(loc="lower left", fontsize=8)

@@ -14,7 +14,6 @@
 
 #include "base/parallel.h"
 #include "survey/spanning_forest.h"
-#include "survey/visual_words.h"
 
 namespace isthmus {
 namespace {
@@ -60,14 +59,24 @@ double neighbour_distance_m(const Survey& survey) {
 
 void compare(Survey& survey) {
   std::vector<survey::DescriptorView> views;
-  for (const CandidateInput* scan : survey.scans) views.push_back({scan->descriptors, scan->num_keypoints});
-  const std::vector<survey::WordBag> bags = survey::weighted_bags(views);
+  bool all_upright = true;
+  for (const CandidateInput* scan : survey.scans) {
+    views.push_back(scan->descriptors);
+    all_upright = all_upright && (scan->descriptors.num_keypoints == 0 || !scan->descriptors.heights_voxels.empty());
+  }
+  const std::vector<survey::WordBag> at_heights = survey::weighted_bags(views, true);
+  const std::vector<survey::WordBag> anywhere =
+      all_upright ? std::vector<survey::WordBag>{} : survey::weighted_bags(views, false);
   const std::size_t n = survey.scans.size();
   survey.likeness.assign(n * n, 0.0);
   parallel_for_index(n, 1, [&](std::size_t a) {
     // The smaller index first, so that both halves hold the same bits.
-    for (std::size_t b = 0; b < n; ++b)
-      if (a != b) survey.likeness[a * n + b] = survey::likeness(bags[std::min(a, b)], bags[std::max(a, b)]);
+    for (std::size_t b = 0; b < n; ++b) {
+      if (a == b) continue;
+      const bool upright = all_upright || (!views[a].heights_voxels.empty() && !views[b].heights_voxels.empty());
+      const std::vector<survey::WordBag>& bags = upright ? at_heights : anywhere;
+      survey.likeness[a * n + b] = survey::likeness(bags[std::min(a, b)], bags[std::max(a, b)]);
+    }
   });
 }
 

@@ -10,15 +10,15 @@
 #include <vector>
 
 #include "config/option_table.h"
+#include "survey/visual_words.h"
 
 namespace isthmus {
 
 /// What the choice of pairs needs of one scan.
 struct CandidateInput {
-  int id = 0;                          ///< unique
-  std::string name;                    ///< unique; what the answer depends on, instead of the order of the files
-  std::span<const float> descriptors;  ///< num_keypoints x dimension, a row of unit length per keypoint
-  std::size_t num_keypoints = 0;
+  int id = 0;        ///< unique
+  std::string name;  ///< unique; what the answer depends on, instead of the order of the files
+  survey::DescriptorView descriptors;
   std::optional<Eigen::Vector3d> prior_position;  ///< of the station, metres, one frame for all scans that have it
 };
 
@@ -60,7 +60,8 @@ struct ScreenedPair {
 using CastGlances = std::function<std::vector<ScreenedPair>(std::span<const std::pair<int, int>>)>;
 
 /// Bags of visual words compared by tf-idf (Sivic, Zisserman 2003); a word is the signs of a descriptor's distances to
-/// random planes from a fixed seed (locality-sensitive hashing, Charikar 2002), so nothing is trained. The same graph
+/// random planes from a fixed seed (locality-sensitive hashing, Charikar 2002), so nothing is trained; where both scans
+/// know their vertical, a word counts only at its own height above the station. The same graph
 /// for any order of the inputs and any thread count. Precondition: equal dimensions, unique ids and names.
 /// Unless all pairs are tried anyway, or nothing but groups is wanted, `cast` is asked once about each scan's
 /// `screened_per_scan` most alike, ascending by the scans' names: what it finds raises their promise, the others keep a

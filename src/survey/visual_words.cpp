@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "base/parallel.h"
 #include "base/rng.h"
@@ -12,63 +11,89 @@ namespace {
 
 // Several independent short codes instead of one long one: a descriptor near a plane of one table is far from those of
 // others.
-constexpr int kTables = 4;
-constexpr int kBits = 11;
+constexpr std::uint32_t kTables = 8;
+constexpr std::uint32_t kBits = 9;
+constexpr std::uint32_t kHeightBits = 7;
+constexpr float kHeightBinVoxels = 4;
+constexpr std::uint32_t kNumWords = kTables << (kHeightBits + kBits);
 constexpr std::uint64_t kSeed = 0x15AA5;  // any number; fixed, so that words mean the same in every run
 
 /// Random planes through the mean descriptor: without it the all-positive histograms would lie on one side of most
 /// planes.
 struct Planes {
-  std::vector<float> mean;     // dimension
   std::vector<float> normals;  // (kTables x kBits) x dimension
+  std::vector<float> offsets;  // of the mean descriptor along them
 };
 
-std::vector<float> mean_descriptor(std::span<const DescriptorView> scans, std::size_t dimension) {
-  std::vector<double> sum(dimension, 0.0);
+std::vector<double> mean_descriptor(std::span<const DescriptorView> scans, std::size_t dimension) {
+  std::vector<double> mean(dimension, 0.0);
   double count = 0;
   for (const DescriptorView& scan : scans) {
+    std::vector<std::uint64_t> sum(dimension, 0);
     for (std::size_t i = 0; i < scan.num_keypoints; ++i)
       for (std::size_t d = 0; d < dimension; ++d) sum[d] += scan.values[i * dimension + d];
+    for (std::size_t d = 0; d < dimension; ++d) mean[d] += static_cast<double>(sum[d]);
     count += static_cast<double>(scan.num_keypoints);
   }
-  std::vector<float> mean(dimension);
-  for (std::size_t d = 0; d < dimension; ++d) mean[d] = static_cast<float>(sum[d] / std::max(1.0, count));
+  for (double& value : mean) value /= std::max(1.0, count);
   return mean;
 }
 
 Planes planes_for(std::span<const DescriptorView> scans, std::size_t dimension) {
-  Planes planes{mean_descriptor(scans, dimension), {}};
+  const std::vector<double> mean = mean_descriptor(scans, dimension);
+  Planes planes;
   Rng rng(seed_of(kSeed, "visual words"));
-  planes.normals.resize(static_cast<std::size_t>(kTables * kBits) * dimension);
-  for (float& value : planes.normals) value = static_cast<float>(rng.normal());
+  for (std::uint32_t plane = 0; plane < kTables * kBits; ++plane) {
+    double offset = 0;
+    for (std::size_t d = 0; d < dimension; ++d) {
+      planes.normals.push_back(static_cast<float>(rng.normal()));
+      offset += static_cast<double>(planes.normals.back()) * mean[d];
+    }
+    planes.offsets.push_back(static_cast<float>(offset));
+  }
   return planes;
 }
 
-std::map<std::uint32_t, float> word_counts(const DescriptorView& scan, std::size_t dimension, const Planes& planes) {
-  std::map<std::uint32_t, float> counts;
-  std::vector<float> centred(dimension);
+std::uint32_t height_bin(float height_voxels) {
+  constexpr float kMost = static_cast<float>(1U << (kHeightBits - 1));
+  return static_cast<std::uint32_t>(std::clamp(std::floor(height_voxels / kHeightBinVoxels), -kMost, kMost - 1) +
+                                    kMost);
+}
+
+/// Words and how often the scan has them, ascending.
+WordBag word_counts(const DescriptorView& scan, std::size_t dimension, const Planes& planes, bool use_heights) {
+  std::vector<std::uint32_t> words;
+  if (use_heights && scan.heights_voxels.empty()) return {};
+  words.reserve(scan.num_keypoints * kTables);
+  std::vector<float> values(dimension);
   for (std::size_t i = 0; i < scan.num_keypoints; ++i) {
-    for (std::size_t d = 0; d < dimension; ++d) centred[d] = scan.values[i * dimension + d] - planes.mean[d];
+    for (std::size_t d = 0; d < dimension; ++d) values[d] = static_cast<float>(scan.values[i * dimension + d]);
+    const std::uint32_t height = use_heights ? height_bin(scan.heights_voxels[i]) : 0;
     const float* normal = planes.normals.data();
-    for (int table = 0; table < kTables; ++table) {
-      std::uint32_t word = static_cast<std::uint32_t>(table) << kBits;
-      for (int bit = 0; bit < kBits; ++bit, normal += dimension) {
-        float side = 0;
-        for (std::size_t d = 0; d < dimension; ++d) side += centred[d] * normal[d];
-        word |= static_cast<std::uint32_t>(side > 0) << bit;
+    for (std::uint32_t table = 0; table < kTables; ++table) {
+      std::uint32_t word = (table << kHeightBits | height) << kBits;
+      for (std::uint32_t bit = 0; bit < kBits; ++bit, normal += dimension) {
+        float along = 0;
+        for (std::size_t d = 0; d < dimension; ++d) along += values[d] * normal[d];
+        word |= static_cast<std::uint32_t>(along > planes.offsets[table * kBits + bit]) << bit;
       }
-      counts[word] += 1.0F;
+      words.push_back(word);
     }
+  }
+  std::sort(words.begin(), words.end());
+  WordBag counts;
+  for (const std::uint32_t word : words) {
+    if (counts.empty() || counts.back().first != word) counts.emplace_back(word, 0.0F);
+    counts.back().second += 1;
   }
   return counts;
 }
 
-WordBag weighted(const std::map<std::uint32_t, float>& counts, const std::map<std::uint32_t, int>& scans_with_word,
-                 std::size_t num_scans) {
+WordBag weighted(const WordBag& counts, const std::vector<std::uint32_t>& scans_with_word, std::size_t num_scans) {
   WordBag bag;
   double sq_norm = 0;
   for (const auto& [word, count] : counts) {
-    const double rarity = std::log(static_cast<double>(num_scans) / scans_with_word.at(word));
+    const double rarity = std::log(static_cast<double>(num_scans) / scans_with_word[word]);
     // The square root tames bursts: a wall gives one word a thousand times.
     const double weight = std::sqrt(static_cast<double>(count)) * rarity;
     if (weight <= 0) continue;
@@ -81,20 +106,20 @@ WordBag weighted(const std::map<std::uint32_t, float>& counts, const std::map<st
 
 }  // namespace
 
-std::vector<WordBag> weighted_bags(std::span<const DescriptorView> scans) {
+std::vector<WordBag> weighted_bags(std::span<const DescriptorView> scans, bool use_heights) {
   std::size_t dimension = 0;
   for (const DescriptorView& scan : scans)
     if (scan.num_keypoints > 0) dimension = scan.values.size() / scan.num_keypoints;
   std::vector<WordBag> bags(scans.size());
   if (dimension == 0) return bags;
   const Planes planes = planes_for(scans, dimension);
-  std::vector<std::map<std::uint32_t, float>> counts(scans.size());
-  parallel_for_index(scans.size(), 1, [&](std::size_t i) { counts[i] = word_counts(scans[i], dimension, planes); });
-  std::map<std::uint32_t, int> scans_with_word;
-  for (const auto& scan : counts)
-    for (const auto& [word, count] : scan) ++scans_with_word[word];
   parallel_for_index(scans.size(), 1,
-                     [&](std::size_t i) { bags[i] = weighted(counts[i], scans_with_word, scans.size()); });
+                     [&](std::size_t i) { bags[i] = word_counts(scans[i], dimension, planes, use_heights); });
+  std::vector<std::uint32_t> scans_with_word(kNumWords, 0);
+  for (const WordBag& counts : bags)
+    for (const auto& [word, count] : counts) ++scans_with_word[word];
+  parallel_for_index(scans.size(), 1,
+                     [&](std::size_t i) { bags[i] = weighted(bags[i], scans_with_word, scans.size()); });
   return bags;
 }
 

@@ -19,7 +19,7 @@ constexpr int kKeypoints = 120;
 /// Scans along a street: each sees some places, every place has its own descriptors; neighbours share places. All of
 /// them share half their keypoints with everybody (walls), which must not count.
 struct Street {
-  std::vector<std::vector<float>> descriptors;
+  std::vector<std::vector<std::uint8_t>> descriptors;
   std::vector<CandidateInput> inputs;
 
   explicit Street(int num_scans) {
@@ -32,15 +32,14 @@ struct Street {
         std::vector<double> row(kDimension);
         double norm = 0;
         for (double& v : row) v = rng.uniform() * rng.uniform() + 0.002 * noise.uniform(), norm += v * v;
-        for (const double v : row) descriptors[i].push_back(static_cast<float>(v / std::sqrt(norm)));
+        for (const double v : row) descriptors[i].push_back(static_cast<std::uint8_t>(255 * v / std::sqrt(norm)));
       }
     }
     for (int i = 0; i < num_scans; ++i) {
       CandidateInput input;
       input.id = i;
       input.name = fmt::format("scan{}.ply", i);
-      input.descriptors = descriptors[i];
-      input.num_keypoints = kKeypoints;
+      input.descriptors = {descriptors[i], kKeypoints, {}};
       inputs.push_back(input);
     }
   }
@@ -58,6 +57,33 @@ bool connected(const CandidateGraph& graph, int n) {
   int joins = 0;
   for (const Candidate& c : graph.candidates) joins += sets.join(c.source, c.target);
   return joins == n - 1;
+}
+
+// Sixty scans of one corridor: all have the same shapes, and only those of one room (three scans) at the same heights.
+TEST(Candidates, AWordCountsAtItsOwnHeightAboveTheStation) {
+  constexpr int kScans = 60, kRoomScans = 3;
+  const Street street(1);
+  std::vector<std::vector<float>> heights(kScans);
+  std::vector<CandidateInput> inputs;
+  for (int i = 0; i < kScans; ++i) {
+    Rng rng(seed_of(5, fmt::format("{}", i / kRoomScans)));
+    for (int k = 0; k < kKeypoints; ++k) heights[i].push_back(static_cast<float>(rng.uniform(-40, 40)));
+    inputs.push_back({i, fmt::format("scan{}.ply", i), {street.descriptors[0], kKeypoints, heights[i]}, std::nullopt});
+  }
+  const auto in_one_room = [&](std::size_t most) {
+    const CandidateGraph graph = propose_candidates(inputs, {});
+    std::size_t found = 0;
+    for (std::size_t k = 0; k < most; ++k)
+      found += graph.candidates[k].source / kRoomScans == graph.candidates[k].target / kRoomScans;
+    return found;
+  };
+  constexpr std::size_t kTrue = kScans;  // three pairs a room
+  EXPECT_EQ(in_one_room(kTrue), kTrue);
+  // A scan that does not know its vertical is compared without heights, and changes nothing among the others.
+  inputs.front().descriptors.heights_voxels = {};
+  EXPECT_GE(in_one_room(kTrue), kTrue - 2);
+  for (CandidateInput& input : inputs) input.descriptors.heights_voxels = {};
+  EXPECT_LT(in_one_room(kTrue), kTrue / 2) << "without heights all are alike";
 }
 
 TEST(Candidates, SmallSurveysTryEveryPairOnce) {

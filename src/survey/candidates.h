@@ -25,7 +25,7 @@ struct CandidateInput {
 struct CandidateOptions {
   int all_pairs_up_to = 24;
   int pairs_per_scan = 5;
-  int screened_per_scan = 24;
+  int screened_per_scan = 40;
   int file_order_neighbours = 0;
   std::vector<std::string> groups;
   bool only_groups = false;

@@ -39,7 +39,7 @@ struct Solver {
   std::vector<int> tree;                  // measurements that most loops agree with, ascending
   std::vector<Transform> root_from_node;  // solved, centred frames
   std::vector<char> undecided;            // per measurement: rejected with others, any of which may be the wrong one
-  std::vector<char> doubted;              // per measurement: rejected because no loop could judge it
+  std::vector<char> doubted;              // per measurement: not believed because no loop could judge it
   std::vector<std::string> warnings;
   bool solid = true;     // Consensus::solid
   std::string distrust;  // why no link was believed on the pair stage's word; empty if links were
@@ -352,6 +352,39 @@ bool doubt_bridges(Solver& s) {
   return any;
 }
 
+/// The pair stage's probabilities hold where half of the pairs that are tried fit, as on the sets they were fitted on.
+/// Of a large survey's pairs hardly one in ten does: as many times more wrong ones had their chance. An accepted link
+/// that no loop confirms and that is less than likely at this survey's own share waits for a witness. True if any was.
+bool await_witnesses(Solver& s) {
+  constexpr double kFittedShare = 0.5, kPrior = 10, kLeastProbability = 0.9;
+  double tried = kPrior, fit = kPrior * kFittedShare;
+  for (const SolvedLink& l : s.links) {
+    if (l.link.guided || l.link.by_hand != ByHand::nothing) continue;
+    ++tried;
+    fit += l.link.result.verdict == Verdict::accepted;
+  }
+  const double share = fit / tried;
+  if (share >= kFittedShare) return false;
+  const double scale = std::log(share / (1 - share)) - std::log(kFittedShare / (1 - kFittedShare));
+  const std::vector<char> in_loop = on_loops(s, false), in_any_loop = on_loops(s, true);
+  bool any = false;
+  for (const int e : s.with_verdict(Verdict::accepted)) {
+    const Link& link = s.link_of(e).link;
+    if (in_loop[e] || s.doubted[e] || link.by_hand == ByHand::added || !link.confirmed.empty()) continue;
+    if (!s.measurements[e].votes && in_any_loop[e]) continue;  // it joins nothing
+    const double probability = 1.0 / (1.0 + std::exp(-(s.measurements[e].log_odds + scale)));
+    if (probability >= kLeastProbability) continue;
+    s.judge(
+        e, Verdict::ambiguous,
+        fmt::format("no loop confirms it, and only {:.0f} % of the pairs tried fit: right with {:.2f} (by itself: {})",
+                    100 * share, probability, link.result.reason));
+    s.link_of(e).probability = probability;
+    s.doubted[e] = 1;
+    any = true;
+  }
+  return any;
+}
+
 /// How often refuted links agree with each other: the chance with which a wrong link finds a witness in this survey.
 double closure_of_refuted(const Solver& s) {
   constexpr double kPrior = 4;
@@ -404,11 +437,12 @@ bool distrust_all(Solver& s, const PoseGraph& graph, const SolveOptions& options
 
 void solve_links(Solver& s) {
   let_links_judge_each_other(s);
-  // Ends: every turn moves at least one link from ambiguous to accepted or from accepted to rejected, never back.
+  // Ends: every turn moves at least one link from ambiguous to accepted or from accepted to rejected, never back; the
+  // few that go from accepted to ambiguous go once.
   do {
     while (!optimise_once(s)) {
     }
-  } while (promote_confirmed(s) || doubt_bridges(s));
+  } while (promote_confirmed(s) || doubt_bridges(s) || await_witnesses(s));
 }
 
 /// Poses of the links that are believed, each weighing by what it knows. Which links are believed was judged with the

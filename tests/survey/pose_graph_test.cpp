@@ -437,6 +437,29 @@ TEST(Solve, AConfirmedAmbiguousLinkJoinsAndARefutedOneDoesNot) {
   EXPECT_EQ(solve(world.graph, {}).components.size(), 2u);
 }
 
+// The same accepted link, where most pairs that were tried fit and where hardly any did.
+TEST(Solve, WhereFewPairsFitALinkWithoutALoopNeedsMore) {
+  const auto verdicts = [](int num_misses, ByHand by_hand = ByHand::nothing, bool closed = false) {
+    World world(60);
+    for (int i = 0; i < 9; ++i) world.exact(i, i + 1, 0.9999);
+    world.exact(10, 0, 0.975).by_hand = by_hand;
+    if (closed) world.exact(10, 5, 0.975);
+    for (int i = 0; i < num_misses; ++i) world.wrong(11 + i % 49, i % 10, 0.01, Verdict::rejected);
+    return solve(world.graph, {});
+  };
+  const auto doubtful = [](const Solution& solution) { return find_link(solution, 10, 0); };
+  const Solution few_misses = verdicts(5), many_misses = verdicts(100);
+  EXPECT_EQ(doubtful(few_misses)->link.result.verdict, Verdict::accepted);
+  EXPECT_EQ(few_misses.components.front().scans.size(), 11u);
+  EXPECT_EQ(doubtful(many_misses)->link.result.verdict, Verdict::ambiguous);
+  EXPECT_NE(doubtful(many_misses)->link.result.reason.find("only 12 % of the pairs tried fit"), std::string::npos)
+      << doubtful(many_misses)->link.result.reason;
+  EXPECT_LT(doubtful(many_misses)->probability, 0.9);
+  EXPECT_EQ(many_misses.components.front().scans.size(), 10u) << "the sure ones stay";
+  EXPECT_EQ(doubtful(verdicts(100, ByHand::added))->link.result.verdict, Verdict::accepted);
+  EXPECT_EQ(doubtful(verdicts(100, ByHand::nothing, true))->link.result.verdict, Verdict::accepted) << "a loop";
+}
+
 TEST(Solve, BelievedLinksWeighByWhatTheyKnow) {
   World world(3);
   world.exact(1, 0), world.exact(2, 1);

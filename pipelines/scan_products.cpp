@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kChunkPoints = std::size_t{1}
                                      << 16;   // 1.2 MB with intensity and colour: fits the second-level cache
-constexpr const char* kSummaryVersion = "2";  // of summarise() below; what goes into it is in the regions' key
+constexpr const char* kSummaryVersion = "3";  // of summarise() below; what goes into it is in the regions' key
 constexpr std::size_t kOutlinePoints = 2000;
 
 class Stopwatch {
@@ -110,8 +110,10 @@ std::vector<std::uint8_t> coarse_descriptors(const FeatureCloud& features) {
 }
 
 std::vector<float> heights_of_keypoints(const SampledScan& scan, const FeatureCloud& features) {
+  constexpr float kSureSign = 0.9f;  // as for poses: below it either end may be up
   std::vector<float> heights;
-  if (features.axes.empty() || !features.axes.front().upright) return heights;
+  if (features.axes.empty() || scan.station_kind != StationKind::origin) return heights;
+  if (!features.axes.front().upright || features.axes.front().sign_agreement < kSureSign) return heights;
   const Eigen::Vector3f up = features.axes.front().direction / static_cast<float>(scan.voxel_m);
   for (const std::uint32_t keypoint : features.keypoints)
     heights.push_back(up.dot(scan.points[keypoint] - scan.station));

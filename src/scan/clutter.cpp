@@ -57,7 +57,7 @@ Blocks count_blocks(const OccupiedVoxels& voxels, const std::array<Eigen::Vector
   const Cell high = block_of(box[1]);
   blocks.size = high - blocks.low + Cell::Ones();
   const double volume = blocks.size.cast<double>().prod();
-  if (volume > static_cast<double>(kMostBlocks)) return {};
+  if (!(volume > 0 && volume <= static_cast<double>(kMostBlocks))) return {};
   blocks.octants.assign(static_cast<std::size_t>(volume), Octants{});
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Cell octant = floored(points[i], half_edge);

@@ -105,6 +105,18 @@ double robust_extent(const std::vector<Eigen::Vector3f>& points) {
   return size.norm();
 }
 
+void erase_far(std::vector<Eigen::Vector3f>& points, double farthest_m) {
+  Eigen::Vector3d middle;
+  std::vector<float> values(points.size());
+  for (int a = 0; a < 3; ++a) {
+    for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i][a];
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), at, values.end());
+    middle[a] = static_cast<double>(*at);
+  }
+  std::erase_if(points, [&](const Eigen::Vector3f& p) { return !((p.cast<double>() - middle).norm() <= farthest_m); });
+}
+
 struct ProbedSurface {
   const std::vector<Eigen::Vector3f>& points;
   double extent_m;
@@ -186,28 +198,30 @@ std::vector<Eigen::Vector3f> without_clutter(const std::vector<Eigen::Vector3f>&
     if (!(extent_m > 0)) break;
     std::vector<Eigen::Vector3f> left =
         without_clutter_at(points, ProbedSurface{surface, extent_m}.voxel_for_target(target_points));
-    if (left.size() < kMinProbed) break;
+    if (left.size() < kMinProbed || !(robust_extent(left) > 0)) break;
     surface = std::move(left);
   }
   return surface;
 }
 
-// How far points stand off the surfaces they were measured on: at each of a thousand places the standard deviation
+// How far points stand off the surfaces they were measured on: at each of some hundred places the standard deviation
 // along the normal of the smallest neighbourhood that is flat (after Demantké, Mallet, David, Vallet 2011, section 3,
 // who choose the size by entropy); the middle one counts. 0 where hardly a place is flat at any size.
 double noise_m(const ProbedSurface& surface, double voxel_m) {
   constexpr std::size_t kPlaces = 500;
-  constexpr double kGrowth = 1.4, kMaxShareOfExtent = 0.2;
+  constexpr double kGrowth = 1.4, kMaxShareOfExtent = 0.2, kMaxVoxels = 40;
   constexpr float kFlat = 0.08f, kMinNeighbours = 30;
   constexpr double kMinFlatShare = 0.1;
   const std::vector<Eigen::Vector3f>& points = surface.points;
+  if (static_cast<float>(points.size()) < kMinNeighbours) return 0;
+  const double largest = std::min(kMaxShareOfExtent * surface.extent_m, kMaxVoxels * voxel_m);
   const PointGrid grid(points, static_cast<float>(2 * voxel_m));
   const std::size_t step = std::max<std::size_t>(1, points.size() / kPlaces);
   std::vector<float> deviations;
   std::size_t places = 0;
   for (std::size_t i = 0; i < points.size(); i += step) {
     ++places;
-    for (double radius = voxel_m; radius < kMaxShareOfExtent * surface.extent_m; radius *= kGrowth) {
+    for (double radius = voxel_m; radius < largest; radius *= kGrowth) {
       float n = 0;
       Eigen::Vector3f first = Eigen::Vector3f::Zero();
       Eigen::Matrix3f second = Eigen::Matrix3f::Zero();
@@ -236,6 +250,7 @@ Result<ScanScale> scale_of_probe(const PointChunk& probe, std::optional<std::uin
   // A voxel should gather more than one raw point, or sampling keeps the scanner's pattern: at most this share of the
   // raw points may remain.
   constexpr double kMaxShareKept = 0.55;
+  constexpr double kFarthest = 1e4;  // extents from the middle: marks of missing data, not places
   std::vector<Eigen::Vector3f> points;
   for (const auto& p : probe.points)
     if (p.allFinite() && !p.isZero()) points.push_back(p);
@@ -243,7 +258,9 @@ Result<ScanScale> scale_of_probe(const PointChunk& probe, std::optional<std::uin
     return fail("only " + std::to_string(points.size()) + " usable points", "",
                 "the scan is empty or holds no coordinates");
   const bool whole = !num_points || static_cast<double>(*num_points) < 1.5 * static_cast<double>(points.size());
-  if (!(robust_extent(points) > 0)) return fail("all points are the same", "", "check the file's coordinate columns");
+  const double extent_m = robust_extent(points);
+  if (extent_m > 0) erase_far(points, kFarthest * extent_m);
+  if (!(extent_m > 0)) return fail("all points are the same", "", "check the file's coordinate columns");
   const std::vector<Eigen::Vector3f> surface = without_clutter(points, target_points);
   ScanScale scale;
   scale.extent_m = robust_extent(surface);

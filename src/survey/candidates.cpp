@@ -68,16 +68,28 @@ void compare(Survey& survey) {
   const std::vector<survey::WordBag> anywhere =
       all_upright ? std::vector<survey::WordBag>{} : survey::weighted_bags(views, false);
   const std::size_t n = survey.scans.size();
+  const auto upright = [&](std::size_t a, std::size_t b) {
+    return all_upright || (!views[a].heights_voxels.empty() && !views[b].heights_voxels.empty());
+  };
   survey.likeness.assign(n * n, 0.0);
+  std::vector<double> beside(all_upright ? 0 : n * n, 0.0);  // without heights, of pairs that have them
   parallel_for_index(n, 1, [&](std::size_t a) {
-    // The smaller index first, so that both halves hold the same bits.
-    for (std::size_t b = 0; b < n; ++b) {
-      if (a == b) continue;
-      const bool upright = all_upright || (!views[a].heights_voxels.empty() && !views[b].heights_voxels.empty());
-      const std::vector<survey::WordBag>& bags = upright ? at_heights : anywhere;
-      survey.likeness[a * n + b] = survey::likeness(bags[std::min(a, b)], bags[std::max(a, b)]);
+    for (std::size_t b = a + 1; b < n; ++b) {
+      const std::vector<survey::WordBag>& bags = upright(a, b) ? at_heights : anywhere;
+      survey.likeness[a * n + b] = survey.likeness[b * n + a] = survey::likeness(bags[a], bags[b]);
+      if (!all_upright && upright(a, b)) beside[a * n + b] = survey::likeness(anywhere[a], anywhere[b]);
     }
   });
+  if (all_upright) return;
+  // Words without heights are shared more often: the two kinds are made comparable by the pairs that have both.
+  double with_heights = 0, without = 0;
+  for (std::size_t a = 0; a < n; ++a)
+    for (std::size_t b = a + 1; b < n; ++b)
+      if (upright(a, b)) with_heights += survey.likeness[a * n + b], without += beside[a * n + b];
+  if (!(with_heights > 0 && without > 0)) return;
+  for (std::size_t a = 0; a < n; ++a)
+    for (std::size_t b = 0; b < n; ++b)
+      if (a != b && !upright(a, b)) survey.likeness[a * n + b] *= with_heights / without;
 }
 
 /// Likeness, and beside glances little of it: where there was a glance it decides, and likeness only between equals.

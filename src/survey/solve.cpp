@@ -24,6 +24,7 @@ using namespace survey;  // NOLINT: this file is the module's front door
 constexpr std::size_t kMaxScansForSigmas = 950;
 // Fewer links that loops could judge tell nothing about the others.
 constexpr double kFewestJudged = 8;
+constexpr double kFittedShare = 0.5;  // of the pairs that the pair stage's probability was fitted on, those that fit
 // A loop named in a reason lists at most this many scans.
 constexpr std::size_t kMaxNamedScans = 8;
 
@@ -261,6 +262,7 @@ bool promote_confirmed(Solver& s) {
   SolvedParts parts;
   for (int e = 0; e < static_cast<int>(s.measurements.size()); ++e) {
     if (s.verdict(e) != Verdict::accepted && s.verdict(e) != Verdict::ambiguous) continue;
+    if (s.doubted[e]) continue;  // who could confirm it had been asked before
     kept.push_back(e);
     subset.push_back(s.measurements[e]);
     parts.believed.push_back(s.verdict(e) == Verdict::accepted);
@@ -352,27 +354,40 @@ bool doubt_bridges(Solver& s) {
   return any;
 }
 
-/// The pair stage's probabilities hold where half of the pairs that are tried fit, as on the sets they were fitted on.
-/// Of a large survey's pairs hardly one in ten does: as many times more wrong ones had their chance. An accepted link
-/// that no loop confirms and that is less than likely at this survey's own share waits for a witness. True if any was.
-bool await_witnesses(Solver& s) {
-  constexpr double kFittedShare = 0.5, kPrior = 10, kLeastProbability = 0.9;
+/// The share of the tried pairs that fit, links that wait for a witness included.
+double share_that_fits(const Solver& s) {
+  constexpr double kPrior = 10;
   double tried = kPrior, fit = kPrior * kFittedShare;
   for (const SolvedLink& l : s.links) {
     if (l.link.guided || l.link.by_hand != ByHand::nothing) continue;
+    const Verdict verdict = l.link.result.verdict;
     ++tried;
-    fit += l.link.result.verdict == Verdict::accepted;
+    fit += verdict == Verdict::accepted || (verdict == Verdict::ambiguous && l.measured == Verdict::accepted);
   }
-  const double share = fit / tried;
+  return fit / tried;
+}
+
+/// The pair stage's probabilities hold where half of the pairs that are tried fit, as on the sets they were fitted on.
+/// Of a large survey's pairs one in five to one in ten does: as many more wrong ones had their chance. An accepted link
+/// that no loop confirms and that is less than likely at this survey's own share waits for a witness, and so do the
+/// links that were found by following it. True if any was.
+bool await_witnesses(Solver& s) {
+  constexpr double kLeastProbability = 0.9;
+  const double share = share_that_fits(s);
   if (share >= kFittedShare) return false;
   const double scale = std::log(share / (1 - share)) - std::log(kFittedShare / (1 - kFittedShare));
-  const std::vector<char> in_loop = on_loops(s, false), in_any_loop = on_loops(s, true);
+  const std::vector<char> in_loop = on_loops(s, false);
+  std::vector<int> found_alone = s.with_verdict(Verdict::accepted);
+  std::erase_if(found_alone, [&](int e) { return s.link_of(e).link.guided; });
+  const SpanningForest parts =
+      forest_of(s.num_nodes(), s.measurements, spanning_edges(s.num_nodes(), s.measurements, found_alone));
   bool any = false;
   for (const int e : s.with_verdict(Verdict::accepted)) {
+    const Measurement& m = s.measurements[e];
     const Link& link = s.link_of(e).link;
     if (in_loop[e] || s.doubted[e] || link.by_hand == ByHand::added || !link.confirmed.empty()) continue;
-    if (!s.measurements[e].votes && in_any_loop[e]) continue;  // it joins nothing
-    const double probability = 1.0 / (1.0 + std::exp(-(s.measurements[e].log_odds + scale)));
+    if (link.guided && parts.root[m.source] == parts.root[m.target]) continue;  // it joins nothing
+    const double probability = 1.0 / (1.0 + std::exp(-(m.log_odds + scale)));
     if (probability >= kLeastProbability) continue;
     s.judge(
         e, Verdict::ambiguous,

@@ -74,6 +74,16 @@ TEST(Scale, WhatFloatsInTheAirDoesNotWidenTheVoxel) {
   }
 }
 
+TEST(Scale, MarksOfMissingDataDoNotCount) {
+  Points points = hall_points();
+  const auto clean = scale_of_probe(chunk_of(points), points.size(), 6000);
+  for (std::size_t i = 0; i < points.size(); i += 40)
+    points.insert(points.begin() + static_cast<std::ptrdiff_t>(i), {-1e30f, -1e30f, -1e30f});
+  const auto marked = scale_of_probe(chunk_of(points), points.size(), 6000);
+  ASSERT_TRUE(clean && marked);
+  EXPECT_NEAR(std::log(marked->voxel_m / clean->voxel_m), 0, std::log(1.05));
+}
+
 TEST(Scale, TheVoxelIsNotFinerThanTheNoise) {
   const double clean = scale_of_probe(chunk_of(hall_points()), 40000, 15000)->voxel_m;
   for (const double noise_m : {0.01, 0.1, 0.2}) {

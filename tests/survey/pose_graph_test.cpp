@@ -460,6 +460,30 @@ TEST(Solve, WhereFewPairsFitALinkWithoutALoopNeedsMore) {
   EXPECT_EQ(doubtful(verdicts(100, ByHand::nothing, true))->link.result.verdict, Verdict::accepted) << "a loop";
 }
 
+TEST(Solve, LinksThatWaitForAWitnessCondemnNoOthers) {
+  World world(80);
+  for (int i = 0; i < 23; ++i) world.exact(i, i + 1, i % 2 == 0 ? 0.975 : 0.9925);
+  for (int i = 0; i < 253; ++i) world.wrong(24 + i % 56, i % 24, 0.01, Verdict::rejected);
+  const Solution solution = solve(world.graph, {});
+  for (int i = 0; i < 23; ++i)
+    EXPECT_EQ(find_link(solution, i, i + 1)->link.result.verdict, i % 2 == 0 ? Verdict::ambiguous : Verdict::accepted)
+        << i;
+}
+
+TEST(Solve, WhatABridgeLedToDoesNotHoldIt) {
+  World world(60);
+  for (const int first : {0, 5})
+    for (int i = first; i < first + 4; ++i) world.exact(i, i + 1, 0.9999);
+  world.exact(4, 5, 0.975);
+  for (const auto& [a, b] : {std::pair(3, 6), std::pair(2, 7)}) world.exact(a, b, 0.99).guided = true;
+  EXPECT_EQ(solve(world.graph, {}).components.front().scans.size(), 10u);
+  for (int i = 0; i < 100; ++i) world.wrong(11 + i % 49, i % 10, 0.01, Verdict::rejected);
+  const Solution solution = solve(world.graph, {});
+  EXPECT_EQ(solution.components.front().scans.size(), 5u);
+  EXPECT_EQ(find_link(solution, 4, 5)->link.result.verdict, Verdict::ambiguous);
+  EXPECT_EQ(find_link(solution, 3, 6)->link.result.verdict, Verdict::ambiguous);
+}
+
 TEST(Solve, BelievedLinksWeighByWhatTheyKnow) {
   World world(3);
   world.exact(1, 0), world.exact(2, 1);

@@ -178,7 +178,7 @@ TEST(Solve, UnusableLinksFailWithAReason) {
   World world(3);
   world.right(0, 1);
   world.right(1, 2).result.target_from_source->translation().x() = std::nan("");
-  world.right(0, 9);
+  world.add(0, 9, Transform::Identity());  // there is no such scan
   world.right(2, 2);
   world.right(0, 2).result.target_from_source.reset();
   const Solution solution = solve(world.graph, {});

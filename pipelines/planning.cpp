@@ -17,8 +17,9 @@ namespace isthmus::pipelines {
 namespace {
 
 constexpr std::size_t kChunkPoints = std::size_t{1} << 16;
-constexpr std::size_t kProbePoints = 200000;  // 2.4 MB a thread; enough for a voxel good to a few per cent
-constexpr double kFixedBytes = 64e6;          // chunk, probe, descriptors and regions, whatever the number of voxels
+// 2.4 MB a thread, beside up to 128 MB while floating points are looked for; enough for a voxel good to a few per cent.
+constexpr std::size_t kProbePoints = 200000;
+constexpr double kFixedBytes = 64e6;  // chunk, probe, descriptors and regions, whatever the number of voxels
 constexpr double kBytesPerVoxel =
     600;  // accumulator, sampled point, normals' and descriptors' neighbourhoods (measured)
 constexpr double kLeastBytesPerPoint = 6;  // three 16-bit coordinates: no format stores a point in less

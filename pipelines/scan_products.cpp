@@ -110,10 +110,9 @@ std::vector<std::uint8_t> coarse_descriptors(const FeatureCloud& features) {
 }
 
 std::vector<float> heights_of_keypoints(const SampledScan& scan, const FeatureCloud& features) {
-  constexpr float kSureSign = 0.9f;  // as for poses: below it either end may be up
   std::vector<float> heights;
   if (features.axes.empty() || scan.station_kind != StationKind::origin) return heights;
-  if (!features.axes.front().upright || features.axes.front().sign_agreement < kSureSign) return heights;
+  if (!features.axes.front().upright || !features.axes.front().knows_its_end()) return heights;
   const Eigen::Vector3f up = features.axes.front().direction / static_cast<float>(scan.voxel_m);
   for (const std::uint32_t keypoint : features.keypoints)
     heights.push_back(up.dot(scan.points[keypoint] - scan.station));

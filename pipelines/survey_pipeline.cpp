@@ -243,8 +243,8 @@ class SurveyGraph {
         });
     for (const std::string& warning : graph.warnings) warn(warning);
     rounds_ = std::make_unique<PairRounds>(std::move(graph), settings_.candidates, inputs.size());
-    for (ScanOutcome& scan : out_.scans) {
-      if (!scan.summary) continue;  // needed no more
+    for (ScanOutcome& scan : out_.scans) {  // what only the choice of pairs needed
+      if (!scan.summary) continue;
       std::vector<std::uint8_t>().swap(scan.summary->descriptors);
       std::vector<float>().swap(scan.summary->heights_voxels);
     }

@@ -14,7 +14,9 @@ struct DominantAxis {
   float sigma_rad = 0;       ///< uncertainty of the direction
   float sign_agreement = 0;  ///< 1: all normals along it point the same way (open ground), 0: as many each way (floor
                              ///< and ceiling); 1 also where the station says which end is up
-  bool upright = false;      ///< the instrument's vertical, by what its station could not see (features/upright.h)
+  /// False: either end of the axis may be up.
+  [[nodiscard]] bool knows_its_end() const { return sign_agreement >= 0.9f; }
+  bool upright = false;  ///< the instrument's vertical, by what its station could not see (features/upright.h)
   template <class F>
   void fields(F&& f) {
     f(direction), f(weight), f(sigma_rad), f(sign_agreement), f(upright);

@@ -1,6 +1,5 @@
 #include "pairwise/generators.h"
 
-#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -57,15 +56,13 @@ std::vector<Seed> pair_votes(const GeneratorContext& c) {
 
 std::vector<std::pair<Eigen::Vector3f, Eigen::Vector3f>> common_axes(std::span<const DominantAxis> from,
                                                                      std::span<const DominantAxis> to) {
-  constexpr float kSureSign = 0.9f;
   std::vector<std::pair<Eigen::Vector3f, Eigen::Vector3f>> out;
   const bool uprights = !from.empty() && !to.empty() && from.front().upright && to.front().upright;
   for (std::size_t a = 0; a < (uprights ? 1 : from.size()); ++a)
     for (std::size_t b = 0; b < (uprights ? 1 : to.size()); ++b) {
       if (a > 0 && b > 0) continue;
       out.emplace_back(from[a].direction, to[b].direction);
-      if (std::min(from[a].sign_agreement, to[b].sign_agreement) < kSureSign)
-        out.emplace_back(from[a].direction, -to[b].direction);
+      if (!from[a].knows_its_end() || !to[b].knows_its_end()) out.emplace_back(from[a].direction, -to[b].direction);
     }
   return out;
 }

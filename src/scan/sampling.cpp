@@ -2,7 +2,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <unordered_map>
@@ -118,8 +117,8 @@ void erase_far(std::vector<Eigen::Vector3f>& points, double farthest_m) {
 }
 
 struct ProbedSurface {
-  const std::vector<Eigen::Vector3f>& points;
-  double extent_m;
+  std::vector<Eigen::Vector3f> points;
+  double extent_m = 0;
 
   // Number of occupied voxels falls as the voxel grows: bisect its logarithm.
   [[nodiscard]] double voxel_for(double wanted) const {
@@ -187,23 +186,6 @@ std::vector<Eigen::Vector3f> without_clutter_at(const std::vector<Eigen::Vector3
   return left;
 }
 
-// A wall's thousand points fill few voxels, a thousand that float in the air fill a thousand: the voxel would grow
-// until they share some. What floats is left out at the voxel that all points give, which is too large, and again at
-// the one that is left then.
-std::vector<Eigen::Vector3f> without_clutter(const std::vector<Eigen::Vector3f>& points, int target_points) {
-  constexpr int kRounds = 3;
-  std::vector<Eigen::Vector3f> surface = points;
-  for (int round = 0; round < kRounds; ++round) {
-    const double extent_m = robust_extent(surface);
-    if (!(extent_m > 0)) break;
-    std::vector<Eigen::Vector3f> left =
-        without_clutter_at(points, ProbedSurface{surface, extent_m}.voxel_for_target(target_points));
-    if (left.size() < kMinProbed || !(robust_extent(left) > 0)) break;
-    surface = std::move(left);
-  }
-  return surface;
-}
-
 // How far points stand off the surfaces they were measured on: at each of some hundred places the standard deviation
 // along the normal of the smallest neighbourhood that is flat (after Demantké, Mallet, David, Vallet 2011, section 3,
 // who choose the size by entropy); the middle one counts. 0 where hardly a place is flat at any size.
@@ -250,6 +232,7 @@ Result<ScanScale> scale_of_probe(const PointChunk& probe, std::optional<std::uin
   // A voxel should gather more than one raw point, or sampling keeps the scanner's pattern: at most this share of the
   // raw points may remain.
   constexpr double kMaxShareKept = 0.55;
+  constexpr int kRounds = 3;
   constexpr double kFarthest = 1e4;  // extents from the middle: marks of missing data, not places
   std::vector<Eigen::Vector3f> points;
   for (const auto& p : probe.points)
@@ -258,17 +241,25 @@ Result<ScanScale> scale_of_probe(const PointChunk& probe, std::optional<std::uin
     return fail("only " + std::to_string(points.size()) + " usable points", "",
                 "the scan is empty or holds no coordinates");
   const bool whole = !num_points || static_cast<double>(*num_points) < 1.5 * static_cast<double>(points.size());
-  const double extent_m = robust_extent(points);
-  if (extent_m > 0) erase_far(points, kFarthest * extent_m);
-  if (!(extent_m > 0)) return fail("all points are the same", "", "check the file's coordinate columns");
-  const std::vector<Eigen::Vector3f> surface = without_clutter(points, target_points);
+  if (const double extent_m = robust_extent(points); extent_m > 0) erase_far(points, kFarthest * extent_m);
+  ProbedSurface probed{points, robust_extent(points)};
+  if (!(probed.extent_m > 0)) return fail("all points are the same", "", "check the file's coordinate columns");
   ScanScale scale;
-  scale.extent_m = robust_extent(surface);
-  const ProbedSurface probed{surface, scale.extent_m};
   scale.voxel_m = probed.voxel_for_target(target_points);
+  // A wall's thousand points fill few voxels, a thousand that float in the air fill a thousand: the voxel would grow
+  // until they share some. What floats is left out at the voxel that all points give, which is too large, and again at
+  // the one that is left then.
+  for (int round = 0; round < kRounds; ++round) {
+    ProbedSurface left{without_clutter_at(points, scale.voxel_m)};
+    if (left.points.size() >= kMinProbed) left.extent_m = robust_extent(left.points);
+    if (!(left.extent_m > 0)) break;
+    probed = std::move(left);
+    scale.voxel_m = probed.voxel_for_target(target_points);
+  }
+  scale.extent_m = probed.extent_m;
   constexpr double kDeviations = 3;  // a finer voxel would keep the noise as geometry
   scale.voxel_m = std::max(scale.voxel_m, kDeviations * noise_m(probed, scale.voxel_m));
-  scale.spacing_m = whole ? probed.voxel_for(kMaxShareKept * static_cast<double>(surface.size())) : 0;
+  scale.spacing_m = whole ? probed.voxel_for(kMaxShareKept * static_cast<double>(probed.points.size())) : 0;
   return scale;
 }
 

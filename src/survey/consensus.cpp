@@ -138,7 +138,7 @@ CutJudgement judged(const LinksInPlay& links, const SpanningForest& forest, int 
 
 /// Alone against "all are wrong": a group of ambiguous links that would be believed if its rivals were gone.
 bool sufficient(const CutGroup& group, const SolveOptions& options) {
-  return group.confirming.size() >= 2 && 1.0 / (1.0 + std::exp(-group.score)) >= options.promote_probability;
+  return group.confirming.size() >= 2 && probability_of(group.score) >= options.promote_probability;
 }
 
 /// Takes links out of play whose cut holds by ambiguous links that do not convince; true if any.

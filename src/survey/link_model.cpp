@@ -104,6 +104,8 @@ double clipped_log_odds(double probability) {
   return std::log(p / (1.0 - p));
 }
 
+double probability_of(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
+
 MeasurementOrReason measurement_of(const Link& link, const GraphScan& source, const GraphScan& target,
                                    const NoiseModel& noise) {
   const auto unusable = [](std::string why) { return MeasurementOrReason{{}, std::move(why)}; };

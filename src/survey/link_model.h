@@ -73,5 +73,7 @@ MeasurementOrReason measurement_of(const Link& link, const GraphScan& source, co
 
 /// log p/(1-p), p clipped to [0.01, 0.9999]: no pair stage knows more than that.
 double clipped_log_odds(double probability);
+/// Its inverse, without the clipping.
+double probability_of(double log_odds);
 
 }  // namespace isthmus::survey

@@ -18,7 +18,7 @@ std::vector<ConfirmedLink> confirmed_within_parts(const SolvedParts& parts, cons
   for (int e = 0; e < static_cast<int>(parts.measurements.size()); ++e) {
     const Measurement& m = parts.measurements[e];
     if (parts.believed[e] || !m.votes || parts.part[m.source] != parts.part[m.target]) continue;
-    if (1.0 / (1.0 + std::exp(-agreeing_vote(m, options))) < options.promote_probability) continue;
+    if (probability_of(agreeing_vote(m, options)) < options.promote_probability) continue;
     const Transform predicted = parts.root_from_node[m.target].inverse() * parts.root_from_node[m.source];
     const Vector6d d = disagreement(m.target_from_source.b_from_a, predicted);
     if (!is_tight(m.log_odds < kUnlikelyLogOdds ? kCloser * d : d, m)) continue;

@@ -334,8 +334,7 @@ bool doubt_bridges(Solver& s) {
   for (const int e : s.with_verdict(Verdict::accepted)) {
     if (in_loop[e] || s.link_of(e).link.by_hand == ByHand::added) continue;
     if (!s.measurements[e].votes && in_any_loop[e]) continue;  // it joins nothing
-    const double probability =
-        std::min(1 - record.wrong, 1.0 / (1.0 + std::exp(-(s.measurements[e].log_odds + scale))));
+    const double probability = std::min(1 - record.wrong, probability_of(s.measurements[e].log_odds + scale));
     if (probability >= 1.0 - s.options.undecided_wrong_probability) continue;
     s.judge(
         e, Verdict::rejected,
@@ -387,7 +386,7 @@ bool await_witnesses(Solver& s) {
     const Link& link = s.link_of(e).link;
     if (in_loop[e] || s.doubted[e] || link.by_hand == ByHand::added || !link.confirmed.empty()) continue;
     if (link.guided && parts.root[m.source] == parts.root[m.target]) continue;  // it joins nothing
-    const double probability = 1.0 / (1.0 + std::exp(-(m.log_odds + scale)));
+    const double probability = probability_of(m.log_odds + scale);
     if (probability >= kLeastProbability) continue;
     s.judge(
         e, Verdict::ambiguous,
@@ -527,7 +526,7 @@ void mark_loops(Solver& s) {
   for (int e = 0; e < static_cast<int>(s.measurements.size()); ++e) {
     if (!in_loop[e]) continue;
     s.link_of(e).in_loop = true;
-    s.link_of(e).probability = 1.0 / (1.0 + std::exp(-agreeing_vote(s.measurements[e], s.options)));
+    s.link_of(e).probability = probability_of(agreeing_vote(s.measurements[e], s.options));
   }
 }
 

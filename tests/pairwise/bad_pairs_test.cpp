@@ -119,21 +119,8 @@ TEST(BadPairs, MillimetresAtAVoxelInMetresAreNamed) {
 // Clutter as dense as half of all points, evenly in the air.
 TEST(BadPairs, ScansOfWhichHalfFloatsInTheAirAreLaidRight) {
   const Transform from = pose_of({-2, -0.5, 1.7}), to = pose_of({2, 0.5, 1.8}, {0, 0, 1.3});
-  const auto cluttered = [](Points points, std::uint64_t seed) {
-    Eigen::AlignedBox3f box;
-    for (const auto& p : points) box.extend(p);
-    Rng rng(seed);
-    const std::size_t measured = points.size();
-    for (std::size_t k = 0; k < measured; ++k) {
-      Eigen::Vector3f p;
-      for (int a = 0; a < 3; ++a)
-        p[a] = static_cast<float>(rng.uniform(static_cast<double>(box.min()[a]), static_cast<double>(box.max()[a])));
-      points.push_back(p);
-    }
-    return points;
-  };
-  const ScanProduct source = product_of(cluttered(hall_points(from, 1), 5), kHallVoxel);
-  const ScanProduct target = product_of(cluttered(hall_points(to, 2), 6), kHallVoxel);
+  const ScanProduct source = product_of(testing::with_clutter(hall_points(from, 1), 0.5, 5), kHallVoxel);
+  const ScanProduct target = product_of(testing::with_clutter(hall_points(to, 2), 0.5, 6), kHallVoxel);
   const PairResult r = register_pair(source, target, PairOptions{});
   EXPECT_TRUE(r.verdict == Verdict::accepted || r.verdict == Verdict::ambiguous) << r.reason;
   EXPECT_GT(r.probability, 0.8) << r.reason;

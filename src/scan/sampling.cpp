@@ -1,6 +1,5 @@
 #include "scan/sampling.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +8,7 @@
 
 #include "geometry/point_grid.h"
 #include "scan/clutter.h"
+#include "scan/thinning.h"
 
 namespace isthmus {
 
@@ -186,44 +186,11 @@ std::vector<Eigen::Vector3f> without_clutter_at(const std::vector<Eigen::Vector3
   return left;
 }
 
-// How far points stand off the surfaces they were measured on: at each of some hundred places the standard deviation
-// along the normal of the smallest neighbourhood that is flat (after Demantké, Mallet, David, Vallet 2011, section 3,
-// who choose the size by entropy); the middle one counts. 0 where hardly a place is flat at any size.
-double noise_m(const ProbedSurface& surface, double voxel_m) {
-  constexpr std::size_t kPlaces = 500;
-  constexpr double kGrowth = 1.4, kMaxShareOfExtent = 0.2, kMaxVoxels = 40;
-  constexpr float kFlat = 0.08f, kMinNeighbours = 30;
-  constexpr double kMinFlatShare = 0.1;
-  const std::vector<Eigen::Vector3f>& points = surface.points;
-  if (static_cast<float>(points.size()) < kMinNeighbours) return 0;
-  const double largest = std::min(kMaxShareOfExtent * surface.extent_m, kMaxVoxels * voxel_m);
-  const PointGrid grid(points, static_cast<float>(2 * voxel_m));
-  const std::size_t step = std::max<std::size_t>(1, points.size() / kPlaces);
-  std::vector<float> deviations;
-  std::size_t places = 0;
-  for (std::size_t i = 0; i < points.size(); i += step) {
-    ++places;
-    for (double radius = voxel_m; radius < largest; radius *= kGrowth) {
-      float n = 0;
-      Eigen::Vector3f first = Eigen::Vector3f::Zero();
-      Eigen::Matrix3f second = Eigen::Matrix3f::Zero();
-      grid.for_each_within(points[i], static_cast<float>(radius), [&](std::uint32_t j, float) {
-        const Eigen::Vector3f d = points[j] - points[i];
-        n += 1, first += d, second += d * d.transpose();
-      });
-      if (n < kMinNeighbours) continue;
-      const Eigen::Vector3f mean = first / n;
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-      solver.computeDirect(second / n - mean * mean.transpose(), Eigen::EigenvaluesOnly);
-      const float smallest = std::max(0.0f, solver.eigenvalues()[0]);
-      if (smallest >= kFlat * solver.eigenvalues().sum()) continue;
-      deviations.push_back(std::sqrt(smallest));
-      break;
-    }
-  }
-  if (static_cast<double>(deviations.size()) < kMinFlatShare * static_cast<double>(places)) return 0;
-  std::sort(deviations.begin(), deviations.end());
-  return static_cast<double>(deviations[deviations.size() / 2]);
+double noise_of(const ProbedSurface& surface, double voxel_m) {
+  constexpr double kMaxShareOfExtent = 0.2, kMaxVoxels = 40;
+  const std::vector<std::uint32_t> ones(surface.points.size(), 1);
+  return noise_m({surface.points, {}, ones}, voxel_m,
+                 std::min(kMaxShareOfExtent * surface.extent_m, kMaxVoxels * voxel_m));
 }
 
 }  // namespace
@@ -257,8 +224,8 @@ Result<ScanScale> scale_of_probe(const PointChunk& probe, std::optional<std::uin
     scale.voxel_m = probed.voxel_for_target(target_points);
   }
   scale.extent_m = probed.extent_m;
-  constexpr double kDeviations = 3;  // a finer voxel would keep the noise as geometry
-  scale.voxel_m = std::max(scale.voxel_m, kDeviations * noise_m(probed, scale.voxel_m));
+  constexpr double kDeviations = 1.5;  // thinned surfaces are no thicker; a finer voxel would gain nothing
+  scale.voxel_m = std::max(scale.voxel_m, kDeviations * noise_of(probed, scale.voxel_m));
   scale.spacing_m = whole ? probed.voxel_for(kMaxShareKept * static_cast<double>(probed.points.size())) : 0;
   return scale;
 }

@@ -12,6 +12,7 @@
 #include "scan/sampling.h"
 #include "scan/station.h"
 #include "scan/surface.h"
+#include "scan/thinning.h"
 
 namespace isthmus {
 namespace {
@@ -295,6 +296,53 @@ FreeSpace image_of(const std::vector<Voxel>& fine, double fine_voxel_m, const Ei
   return image;
 }
 
+struct ThinnedVoxels {
+  std::vector<Voxel> fine;  // sorted by key
+  double noise_m = 0;
+};
+
+// The fine voxels with their points moved to the middle of the noise; nothing where noise is small against the coarse
+// voxel. Of fifteen clean sets (woods among them) no scan had more than 0.26 voxels.
+std::optional<ThinnedVoxels> without_noise(const std::vector<Voxel>& fine, const std::vector<Voxel>& coarse,
+                                           double voxel_m) {
+  constexpr double kMuchVoxels = 1.0 / 3, kLargestVoxels = 12;
+  std::vector<Eigen::Vector3f> means;
+  std::vector<Eigen::Matrix3f> covariances;
+  for (const Voxel& v : coarse) {
+    const VoxelMoments m = moments_of(v, voxel_m);
+    means.push_back(m.mean), covariances.push_back(m.covariance);
+  }
+  const std::vector<std::uint32_t> counts = counts_of(coarse);
+  const CountedPoints cloud{means, covariances, counts};
+  ThinnedVoxels thin{{}, noise_m(cloud, voxel_m, kLargestVoxels * voxel_m)};
+  if (thin.noise_m < kMuchVoxels * voxel_m) return std::nullopt;
+  const double fine_voxel_m = voxel_m / kFineRatio;
+  const std::vector<RidgePoint> ridge = thinned(means_of(fine, fine_voxel_m), cloud, thin.noise_m);
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+  for (std::uint32_t i = 0; i < fine.size(); ++i)
+    order.emplace_back(voxel_key((ridge[i].point.cast<double>() / fine_voxel_m).array().floor().cast<std::int64_t>()),
+                       i);
+  std::sort(order.begin(), order.end());
+  for (const auto& [key, i] : order) {
+    if (thin.fine.empty() || thin.fine.back().key != key) thin.fine.emplace_back().key = key;
+    Voxel& v = thin.fine.back();
+    const double n = fine[i].count;
+    const Eigen::Vector3d d = ridge[i].point.cast<double>() - voxel_centre(key, fine_voxel_m);
+    const Eigen::Matrix3d in_plane =
+        Eigen::Matrix3d::Identity() - ridge[i].normal.cast<double>() * ridge[i].normal.cast<double>().transpose();
+    const Eigen::Matrix3d spread =
+        in_plane * moments_of(fine[i], fine_voxel_m).covariance.cast<double>() * in_plane + d * d.transpose();
+    v.sum += n * d;
+    v.squares += n * (Eigen::Matrix<double, 6, 1>() << spread(0, 0), spread(0, 1), spread(0, 2), spread(1, 1),
+                      spread(1, 2), spread(2, 2))
+                         .finished();
+    v.count += fine[i].count;
+    v.min_range_m = std::min(v.min_range_m, fine[i].min_range_m);
+    v.max_range_m = std::max(v.max_range_m, fine[i].max_range_m);
+  }
+  return thin;
+}
+
 // Points, normals and variation of the voxels that belong to a surface; returns the index of each kept voxel.
 std::vector<std::uint32_t> fill(SurfacePoints& out, const std::vector<Voxel>& voxels, double voxel_m) {
   std::vector<VoxelMoments> moments(voxels.size());
@@ -384,6 +432,11 @@ Result<SampledScan> VoxelSampler::finish() {
       take_out_clutter(s.voxels, s.fine_voxel_m, density / kFineVoxels);
       out.notes.push_back(fmt::format("{:.0f} % of the voxels float evenly in the air and were left out",
                                       100.0 * static_cast<double>(keys.size()) / static_cast<double>(before)));
+    }
+    if (auto thin = without_noise(s.voxels, coarse, s.voxel_m)) {
+      s.voxels = std::move(thin->fine);
+      coarse = merged(s.voxels, s.fine_voxel_m);
+      out.notes.push_back(fmt::format("noise of {:.2g} m: surfaces were thinned to the middle of it", thin->noise_m));
     }
     SurfacePoints surface;
     const std::vector<std::uint32_t> kept = fill(surface, coarse, s.voxel_m);

@@ -18,7 +18,7 @@ namespace isthmus::pipelines {
 struct PlannedPair {
   int source = 0;
   int target = 0;
-  double score = 0;                             ///< likeness, or the predicted overlap
+  double score = 0;                             ///< promise, or the predicted overlap
   bool second_round = false;                    ///< proposed by solved poses or by links found before
   std::optional<Transform> target_from_source;  ///< where the solved poses point; absent in the first round
 };

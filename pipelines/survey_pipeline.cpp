@@ -226,11 +226,17 @@ class SurveyGraph {
     };
     for (const ScanOutcome& scan : out_.scans) {
       const std::string& name = scan.ref.name;
-      if (scan.missing) inputs.push_back({scan.id, name, {}, position_of(name)});  // to look ahead
-      if (!scan.summary || scan.error) continue;
-      const ScanSummary& summary = *scan.summary;
-      const std::size_t count = summary.dimension == 0 ? 0 : summary.descriptors.size() / summary.dimension;
-      inputs.push_back({scan.id, name, {summary.descriptors, count, summary.heights_voxels}, position_of(name)});
+      CandidateInput input{scan.id, name, {}, {}, false, position_of(name)};
+      if (scan.summary && !scan.error) {
+        const ScanSummary& summary = *scan.summary;
+        const std::size_t count = summary.dimension == 0 ? 0 : summary.descriptors.size() / summary.dimension;
+        input.descriptors = {summary.descriptors, count, summary.heights_voxels};
+        input.plan = plan_of(summary);
+        input.knows_up = summary.knows_up;
+      } else if (!scan.missing) {  // what is missing takes part, to look ahead
+        continue;
+      }
+      inputs.push_back(std::move(input));
     }
     const ModelSources sources = model_sources();
     CandidateGraph graph =
@@ -247,6 +253,7 @@ class SurveyGraph {
       if (!scan.summary) continue;
       std::vector<std::uint8_t>().swap(scan.summary->descriptors);
       std::vector<float>().swap(scan.summary->heights_voxels);
+      std::vector<Column>().swap(scan.summary->columns);
     }
   }
 

@@ -39,10 +39,8 @@ Eigen::Matrix3f z_from_axis(const Eigen::Vector3f& axis) {
   return Eigen::Quaternionf::FromTwoVectors(axis, Eigen::Vector3f::UnitZ()).toRotationMatrix();
 }
 
-namespace {
-
-GroundPlan made_plan(const ScanModel& model, const Eigen::Matrix3f& z_from_scan, const GroundPlanOptions& options) {
-  const float voxel = model.voxel_m, cell = options.cell_voxels * voxel;
+GroundPlan ground_plan(const PlanPoints& scan, const Eigen::Matrix3f& z_from_scan, const GroundPlanOptions& options) {
+  const float voxel = scan.voxel_m, cell = options.cell_voxels * voxel;
   struct Pile {
     Eigen::Vector2f sum = Eigen::Vector2f::Zero(), facing = Eigen::Vector2f::Zero();
     float n = 0, bottom = std::numeric_limits<float>::infinity(), top = -std::numeric_limits<float>::infinity();
@@ -50,12 +48,13 @@ GroundPlan made_plan(const ScanModel& model, const Eigen::Matrix3f& z_from_scan,
   };
   std::map<std::pair<std::int64_t, std::int64_t>, Pile> piles;  // sorted: the order of columns is the same everywhere
   GroundPlan plan;
+  plan.cell_m = cell;
   constexpr std::size_t kMaxLevels = 250;
   std::vector<Level> levels;
-  const Eigen::Vector3f middle = z_from_scan * model.centroid;
-  for (std::size_t i = 0; i < model.points.size(); ++i) {
-    const Eigen::Vector3f p = z_from_scan * model.points[i] - middle, n = z_from_scan * model.normals[i];
-    if (model.variation[i] >= 1) continue;
+  const Eigen::Vector3f middle = z_from_scan * scan.middle;
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    const Eigen::Vector3f p = z_from_scan * scan.points[i] - middle, n = z_from_scan * scan.normals[i];
+    if (scan.variation[i] >= 1) continue;
     if (std::abs(n.z()) > kMinHorizontal) levels.push_back({p.head<2>(), p.z(), n.z() > 0});
     if (std::abs(n.z()) > kMaxUpright) continue;
     Pile& pile = piles[{cell_of(p.x(), cell), cell_of(p.y(), cell)}];
@@ -86,11 +85,12 @@ GroundPlan made_plan(const ScanModel& model, const Eigen::Matrix3f& z_from_scan,
   return plan;
 }
 
-}  // namespace
-
 std::shared_ptr<const GroundPlan> ground_plan(const ScanModel& model, const Eigen::Matrix3f& z_from_scan,
                                               const GroundPlanOptions& options) {
-  return model.uprights().plan(z_from_scan, options, [&] { return made_plan(model, z_from_scan, options); });
+  return model.uprights().plan(z_from_scan, options, [&] {
+    return ground_plan(PlanPoints{model.points, model.normals, model.variation, model.centroid, model.voxel_m},
+                       z_from_scan, options);
+  });
 }
 
 PlanHeights::PlanHeights(const GroundPlan& plan, float cell_m) : cell_m_(cell_m) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <numbers>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -24,6 +25,10 @@ struct Column {
   bool faces = false;  ///< has one heading
   float weight = 1;    ///< falls with the number of columns around that face the same way
   float bottom = 0, top = 0;
+  template <class F>
+  void fields(F&& f) {
+    f(p), f(heading), f(faces), f(weight), f(bottom), f(top);
+  }
 };
 
 /// A point of a horizontal surface.
@@ -38,6 +43,7 @@ struct GroundPlan {
   std::vector<Column> columns;
   std::vector<Level> levels;
   float radius_m = 0;  ///< of the columns about the origin of the plan
+  float cell_m = 0;    ///< one column a cell of this edge
 };
 
 struct GroundPlanOptions {
@@ -49,7 +55,16 @@ struct GroundPlanOptions {
 /// Turns a scan's local frame so that `axis` (unit) is z.
 Eigen::Matrix3f z_from_axis(const Eigen::Vector3f& axis);
 
-/// Deterministic, in the order of cells. The model remembers it (UprightMemo).
+/// The plan of voxel points with their normals and variation, about `middle`. Deterministic, in the order of cells.
+struct PlanPoints {
+  std::span<const Eigen::Vector3f> points, normals;
+  std::span<const float> variation;
+  Eigen::Vector3f middle;  ///< of the points: the plan's origin
+  float voxel_m = 0;
+};
+GroundPlan ground_plan(const PlanPoints& scan, const Eigen::Matrix3f& z_from_scan, const GroundPlanOptions& options);
+
+/// That of a model, which remembers it (UprightMemo).
 std::shared_ptr<const GroundPlan> ground_plan(const ScanModel& model, const Eigen::Matrix3f& z_from_scan,
                                               const GroundPlanOptions& options);
 

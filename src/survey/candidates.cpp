@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "base/parallel.h"
+#include "regions/plan_likeness.h"
 #include "survey/spanning_forest.h"
 
 namespace isthmus {
@@ -23,12 +24,15 @@ using Pair = std::pair<int, int>;  // positions among the scans sorted by name, 
 /// The scans sorted by name (byte by byte, as ids are), and what every choice needs to know of their pairs.
 struct Survey {
   std::vector<const CandidateInput*> scans;
-  std::vector<double> likeness;  // n x n, symmetric
-  std::vector<double> scores;    // likewise: likeness, glances and distance together
+  std::vector<double> likeness;  // of words; n x n, symmetric
+  std::vector<double> promise;   // n x n: what each row's scan expects of each other, about 1 at best
+  std::vector<double> scores;    // likewise: promise, glances and distance together
   CandidateOptions options;
 
   [[nodiscard]] int size() const { return static_cast<int>(scans.size()); }
+  /// What scan a expects of scan b.
   [[nodiscard]] double score(int a, int b) const { return scores[static_cast<std::size_t>(a) * scans.size() + b]; }
+  [[nodiscard]] double score_of_pair(int a, int b) const { return std::max(score(a, b), score(b, a)); }
   [[nodiscard]] std::optional<double> distance_m(int a, int b) const {
     if (!scans[a]->prior_position || !scans[b]->prior_position) return std::nullopt;
     return (*scans[a]->prior_position - *scans[b]->prior_position).norm();
@@ -92,19 +96,64 @@ void compare(Survey& survey) {
       if (a != b && !upright(a, b)) survey.likeness[a * n + b] *= with_heights / without;
 }
 
-/// Likeness, and beside glances little of it: where there was a glance it decides, and likeness only between equals.
+/// How well the plans of each two scans can be laid on each other; 0 where one has none.
+std::vector<double> likeness_of_plans(const Survey& survey) {
+  const std::size_t n = survey.scans.size();
+  std::vector<double> likeness(n * n, 0.0);
+  parallel_for_index(n, 1, [&](std::size_t a) {
+    for (std::size_t b = a + 1; b < n; ++b) {
+      const CandidateInput &first = *survey.scans[a], &second = *survey.scans[b];
+      if (!first.plan || !second.plan || !survey.allowed(static_cast<int>(a), static_cast<int>(b))) continue;
+      float most = plan_likeness(*first.plan, *second.plan);
+      if (!first.knows_up || !second.knows_up)
+        most = std::max(most, plan_likeness(*first.plan, upside_down(*second.plan)));
+      likeness[a * n + b] = likeness[b * n + a] = static_cast<double>(most);
+    }
+  });
+  return likeness;
+}
+
+/// What each scan expects of each other: the ranks that words and plans give it, fused. Where one of two has no plan,
+/// words speak for both.
+void fuse(Survey& survey, const std::vector<double>& of_plans) {
+  constexpr double kSoftening = 5;         // ranks within about this many of each other are nearly equal
+  constexpr double kBetweenEquals = 1e-3;  // of pairs with equal ranks the one with more words in common
+  const std::size_t n = survey.scans.size();
+  survey.promise.assign(n * n, 0.0);
+  for (std::size_t a = 0; a < n; ++a) {
+    const auto add_ranks = [&](const std::vector<double>& by, const auto& weight) {
+      std::vector<std::size_t> others;
+      for (std::size_t b = 0; b < n; ++b)
+        if (b != a && by[a * n + b] > 0) others.push_back(b);
+      std::stable_sort(others.begin(), others.end(),
+                       [&](std::size_t x, std::size_t y) { return by[a * n + x] > by[a * n + y]; });
+      std::size_t rank = 0;  // equals share it
+      for (std::size_t k = 0; k < others.size(); ++k) {
+        if (k > 0 && by[a * n + others[k]] < by[a * n + others[k - 1]]) rank = k;
+        survey.promise[a * n + others[k]] += weight(others[k]) * kSoftening / (kSoftening + static_cast<double>(rank));
+      }
+    };
+    const auto has_plans = [&](std::size_t b) { return survey.scans[a]->plan && survey.scans[b]->plan; };
+    add_ranks(survey.likeness, [&](std::size_t b) { return has_plans(b) ? 0.5 : 1.0; });
+    add_ranks(of_plans, [](std::size_t) { return 0.5; });
+    for (std::size_t b = 0; b < n; ++b) survey.promise[a * n + b] += kBetweenEquals * survey.likeness[a * n + b];
+  }
+}
+
+/// Promise, and beside glances a tenth of it: a clear glance decides.
 void compute_scores(Survey& survey, const std::map<Pair, double>& glances) {
-  constexpr double kLikenessBesideGlance = 0.1;
+  constexpr double kPromiseBesideGlance = 0.1;
   const double typical_m = neighbour_distance_m(survey);
-  survey.scores.assign(survey.likeness.size(), 0.0);
+  const std::size_t n = survey.scans.size();
+  survey.scores.assign(n * n, 0.0);
   for (int a = 0; a < survey.size(); ++a)
     for (int b = 0; b < survey.size(); ++b) {
       if (a == b) continue;
-      const std::size_t at = static_cast<std::size_t>(a) * survey.scans.size() + static_cast<std::size_t>(b);
-      double score = survey.likeness[at];
+      const std::size_t at = static_cast<std::size_t>(a) * n + static_cast<std::size_t>(b);
+      double score = survey.promise[at];
       if (!glances.empty()) {
         const auto glance = glances.find(std::minmax(a, b));
-        score = kLikenessBesideGlance * score + (glance != glances.end() ? glance->second : 0.0);
+        score = kPromiseBesideGlance * score + (glance != glances.end() ? glance->second : 0.0);
       }
       const std::optional<double> d = survey.distance_m(a, b);
       if (d && typical_m > 0) score = (score + 1.0) / (2.0 * (1.0 + *d * *d / (typical_m * typical_m)));
@@ -179,8 +228,8 @@ void warn_of_parts(const Survey& survey, std::vector<std::string>& warnings) {
 std::vector<Candidate> ranked(const Survey& survey, const std::map<Pair, const char*>& chosen) {
   std::vector<Candidate> out;
   for (const auto& [pair, why] : chosen)
-    out.push_back(
-        {survey.scans[pair.second]->id, survey.scans[pair.first]->id, survey.score(pair.first, pair.second), why});
+    out.push_back({survey.scans[pair.second]->id, survey.scans[pair.first]->id,
+                   survey.score_of_pair(pair.first, pair.second), why});
   std::stable_sort(out.begin(), out.end(), [](const Candidate& x, const Candidate& y) { return x.score > y.score; });
   return out;
 }
@@ -233,8 +282,10 @@ CandidateGraph propose_candidates(std::span<const CandidateInput> scans, const C
   std::sort(survey.scans.begin(), survey.scans.end(),
             [](const CandidateInput* a, const CandidateInput* b) { return a->name < b->name; });
   compare(survey);
-  compute_scores(survey, {});
   const bool all_pairs = survey.size() <= options.all_pairs_up_to;
+  fuse(survey,
+       all_pairs || options.only_groups ? std::vector<double>(survey.likeness.size(), 0.0) : likeness_of_plans(survey));
+  compute_scores(survey, {});
   if (cast && !all_pairs && !options.only_groups) compute_scores(survey, glances_at(survey, cast));
   CandidateGraph graph;
   std::map<Pair, const char*> chosen;

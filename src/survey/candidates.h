@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "config/option_table.h"
+#include "regions/ground_plan.h"
 #include "survey/visual_words.h"
 
 namespace isthmus {
@@ -19,13 +20,15 @@ struct CandidateInput {
   int id = 0;        ///< unique
   std::string name;  ///< unique; what the answer depends on, instead of the order of the files
   survey::DescriptorView descriptors;
+  std::optional<GroundPlan> plan;                 ///< along the likeliest vertical; absent where the scan shows none
+  bool knows_up = false;                          ///< which end of that vertical is up
   std::optional<Eigen::Vector3d> prior_position;  ///< of the station, metres, one frame for all scans that have it
 };
 
 struct CandidateOptions {
   int all_pairs_up_to = 24;
   int pairs_per_scan = 5;
-  int screened_per_scan = 40;
+  int screened_per_scan = 24;
   int file_order_neighbours = 0;
   std::vector<std::string> groups;
   bool only_groups = false;
@@ -39,7 +42,8 @@ const config::OptionTable<CandidateOptions>& candidate_options_table();
 struct Candidate {
   int source = 0;    ///< id; the scan whose name sorts later, byte by byte
   int target = 0;    ///< id
-  double score = 0;  ///< promise: likeness in [0, 1] and, where screened, what a glance found; damped by distance
+  double score = 0;  ///< promise: likeness of words and plans in [0, 1] and, where screened, what a glance found;
+                     ///< damped by distance
   std::string why;   ///< "all pairs", "likeness", "connects", "group", "file order"
 };
 
@@ -61,11 +65,13 @@ using CastGlances = std::function<std::vector<ScreenedPair>(std::span<const std:
 
 /// Bags of visual words compared by tf-idf (Sivic, Zisserman 2003); a word is the signs of a descriptor's distances to
 /// random planes from a fixed seed (locality-sensitive hashing, Charikar 2002), so nothing is trained; where both scans
-/// know their vertical, a word counts only at its own height above the station. The same graph
+/// know their vertical, a word counts only at its own height above the station. Where both have a ground plan, how well
+/// one can be laid on the other is a second opinion (regions/plan_likeness.h); each scan ranks the others by both,
+/// and the ranks are fused (reciprocal rank fusion, Cormack, Clarke, Büttcher 2009). The same graph
 /// for any order of the inputs and any thread count. Precondition: equal dimensions, unique ids and names.
 /// Unless all pairs are tried anyway, or nothing but groups is wanted, `cast` is asked once about each scan's
 /// `screened_per_scan` most alike, ascending by the scans' names: what it finds raises their promise, the others keep a
-/// little of their likeness.
+/// little of their promise.
 CandidateGraph propose_candidates(std::span<const CandidateInput> scans, const CandidateOptions& options,
                                   const CastGlances& cast = {});
 

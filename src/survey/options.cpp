@@ -108,9 +108,9 @@ const config::OptionTable<CandidateOptions>& candidate_options_table() {
            0,
            10000,
            {},
-           "Above all_pairs_up_to: a glance (a twentieth of a registration) is cast at the pairs of each scan with "
-           "this "
-           "many of the most similar ones; 0: none, likeness alone chooses.",
+           "Above all_pairs_up_to: a glance (a tenth of a registration) is cast at the pairs of each scan with this "
+           "many "
+           "of those most alike by words and ground plans; 0: none, these alone choose.",
            "docs/stages/candidates.md, table of recall"},
           {"file_order_neighbours",
            &O::file_order_neighbours,

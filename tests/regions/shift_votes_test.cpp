@@ -6,36 +6,16 @@
 #include <algorithm>
 #include <map>
 
-#include "base/rng.h"
+#include "regions/random_plan.h"
 
 namespace isthmus {
 namespace {
 
 constexpr float kCell = 0.6f;
 
-GroundPlan plan_of(std::size_t columns, std::uint64_t seed) {
-  Rng rng(seed);
-  GroundPlan plan;
-  for (std::size_t k = 0; k < columns; ++k) {
-    Column c;
-    c.p = Eigen::Vector2d(rng.uniform(-20, 20), rng.uniform(-20, 20)).cast<float>();
-    c.heading = wrapped(static_cast<float>(rng.uniform(-3, 3)));
-    c.faces = k % 3 != 0;
-    plan.columns.push_back(c);
-    plan.radius_m = std::max(plan.radius_m, c.p.norm());
-  }
-  return plan;
-}
+using testing::moved;
 
-GroundPlan moved(GroundPlan plan, float yaw, const Eigen::Vector2f& shift) {
-  plan.radius_m = 0;
-  for (Column& c : plan.columns) {
-    c.p = Eigen::Rotation2Df(yaw) * c.p + shift;
-    c.heading = wrapped(c.heading + yaw);
-    plan.radius_m = std::max(plan.radius_m, c.p.norm());
-  }
-  return plan;
-}
+GroundPlan plan_of(std::size_t columns, std::uint64_t seed) { return testing::random_plan(columns, 20, seed); }
 
 TEST(ShiftVotes, TheHeaviestPeakIsTheShiftUnderItsTurn) {
   const GroundPlan source = plan_of(80, 1), target = moved(source, 0.7f, {5.0f, -3.0f});

@@ -337,8 +337,6 @@ std::optional<ThinnedVoxels> without_noise(const std::vector<Voxel>& fine, const
                       spread(1, 2), spread(2, 2))
                          .finished();
     v.count += fine[i].count;
-    v.min_range_m = std::min(v.min_range_m, fine[i].min_range_m);
-    v.max_range_m = std::max(v.max_range_m, fine[i].max_range_m);
   }
   return thin;
 }
@@ -428,8 +426,6 @@ Result<SampledScan> VoxelSampler::finish() {
         if (keys.contains(coarse_key(v.key))) out.num_dropped += v.count;
       std::erase_if(s.voxels, [&](const Voxel& v) { return keys.contains(coarse_key(v.key)); });
       if (s.candidate_station) s.raw = image_of(s.voxels, s.fine_voxel_m, *s.candidate_station);
-      constexpr double kFineVoxels = kFineRatio * kFineRatio * kFineRatio;
-      take_out_clutter(s.voxels, s.fine_voxel_m, density / kFineVoxels);
       out.notes.push_back(fmt::format("{:.0f} % of the voxels float evenly in the air and were left out",
                                       100.0 * static_cast<double>(keys.size()) / static_cast<double>(before)));
     }
@@ -437,6 +433,10 @@ Result<SampledScan> VoxelSampler::finish() {
       s.voxels = std::move(thin->fine);
       coarse = merged(s.voxels, s.fine_voxel_m);
       out.notes.push_back(fmt::format("noise of {:.2g} m: surfaces were thinned to the middle of it", thin->noise_m));
+    }
+    if (density > 0) {  // the coarse level is made: what goes now is missing at the fine one only
+      constexpr double kFineVoxels = kFineRatio * kFineRatio * kFineRatio;
+      take_out_clutter(s.voxels, s.fine_voxel_m, density / kFineVoxels);
     }
     SurfacePoints surface;
     const std::vector<std::uint32_t> kept = fill(surface, coarse, s.voxel_m);

@@ -24,6 +24,9 @@ struct Measurement {
   /// The same by the link's own word, with a floor far below: how links weigh against each other once they are
   /// believed.
   Matrix6d own_sqrt_information = Matrix6d::Zero();
+  /// That word as the loops let it stand, for uncertainties: over the variance factor, and less where the link itself
+  /// stands out; zero before they were asked.
+  Matrix6d proven_sqrt_information = Matrix6d::Zero();
   double floor_m = 0;     ///< noise floor at the source's centre: the unit of tight agreement
   double floor_rad = 0;   ///< the same for the rotation
   double log_odds = 0;    ///< log p/(1-p) of the pair stage's probability, clipped; 0 for guided links

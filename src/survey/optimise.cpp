@@ -297,6 +297,7 @@ OptimisedPoses optimise_by_precision(std::vector<Transform> root_from_node, std:
   out.root_from_node = std::move(root_from_node);
   for (double& w : weights) w /= scale;
   out.weights = std::move(weights);
+  out.variance_factor = scale;
   return out;
 }
 

@@ -13,6 +13,7 @@ namespace isthmus::survey {
 struct OptimisedPoses {
   std::vector<Transform> root_from_node;  ///< per node, between centred frames
   std::vector<double> weights;            ///< per measurement, 0 = an outlier, 1 = fully believed
+  double variance_factor = 1;             ///< of the links' own covariances, by what the loops show
   std::string problem;  ///< empty, or what the optimiser complained of: the poses are then its last ones
 };
 

@@ -463,14 +463,18 @@ void solve_links(Solver& s) {
 /// wide noise floor, which makes all nearly equal: good for judging, wasteful for placing.
 void weigh_by_precision(Solver& s) {
   const SpanningForest forest = forest_of(s.num_nodes(), s.measurements, spanning(s));
+  const std::vector<int> accepted = s.with_verdict(Verdict::accepted);
   std::vector<Measurement> believed;
-  for (const int e : s.with_verdict(Verdict::accepted)) believed.push_back(s.measurements[e]);
+  for (const int e : accepted) believed.push_back(s.measurements[e]);
   const OptimisedPoses solved = optimise_by_precision(s.root_from_node, believed, values_of(anchors_of(s, forest)));
   s.root_from_node = solved.root_from_node;
   if (!solved.problem.empty()) s.warnings.push_back("pose optimisation: " + solved.problem);
   for (std::size_t k = 0; k < believed.size(); ++k) {
     Measurement& m = believed[k];
     m.sqrt_information = std::sqrt(solved.weights[k]) * m.own_sqrt_information;
+    // A link that fits better than others is not better known than the factor says.
+    const double proven = std::min(solved.weights[k], 1.0 / solved.variance_factor);
+    s.measurements[accepted[k]].proven_sqrt_information = std::sqrt(proven) * m.own_sqrt_information;
     s.links[m.link].information_used = information_in_local(m, s.scans[m.source]);
   }
 }
@@ -555,8 +559,11 @@ std::vector<Component> components_of(const Solver& s, const SpanningForest& fore
 /// Back from centred frames to local ones, and from the tree's root to the anchor.
 std::vector<PlacedScan> placed_scans(const Solver& s, const SpanningForest& forest, const std::map<int, int>& anchors,
                                      const std::vector<Component>& components) {
-  std::vector<Measurement> accepted;  // with the wide floor: what all links may share, drift and movement, is in it
-  for (const int e : s.with_verdict(Verdict::accepted)) accepted.push_back(s.measurements[e]);
+  std::vector<Measurement> accepted;  // as stiff as they proved, not with the wide floor that links are judged with
+  for (const int e : s.with_verdict(Verdict::accepted)) {
+    accepted.push_back(s.measurements[e]);
+    accepted.back().sqrt_information = accepted.back().proven_sqrt_information;
+  }
   std::vector<std::optional<PoseSigma>> sigmas(s.scans.size());
   if (s.scans.size() <= kMaxScansForSigmas) sigmas = pose_sigmas(s.root_from_node, accepted, values_of(anchors));
   std::map<int, int> component_of_id;

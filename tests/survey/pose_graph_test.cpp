@@ -525,9 +525,37 @@ TEST(Solve, UncertaintyGrowsAlongAChain) {
   const Solution solution = solve(world.graph, {});
   ASSERT_EQ(solution.components[0].anchor, 1);
   EXPECT_FALSE(solution.find(1)->sigma_m);
-  // One link: the information's 1 cm and the noise floor of half a voxel.
-  EXPECT_NEAR(*solution.find(0)->sigma_m, std::hypot(0.01, 0.5 * kVoxel), 1e-3);
+  // One link: the information's 1 cm, and its turn over the few metres to the scan's centre.
+  EXPECT_NEAR(*solution.find(0)->sigma_m, 0.01, 1e-3);
   EXPECT_GT(*solution.find(3)->sigma_m, *solution.find(2)->sigma_m);
+}
+
+// Links that state a centimetre and err by `times` that: the loops tell, and the stated deviations follow.
+TEST(Solve, UncertaintyIsWhatTheLoopsShowNotWhatLinksSay) {
+  const auto ratio = [](double times) {  // of true errors to stated deviations, root mean square an axis
+    double sum = 0;
+    int n = 0;
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+      constexpr int kScans = 8;
+      World world(kScans, seed);
+      for (int i = 0; i < kScans; ++i)
+        for (int j = 0; j < i; ++j) world.right(i, j, 0.98, Verdict::accepted, 0.1 * times);
+      const Solution solution = solve(world.graph, {});
+      const int anchor = solution.components[0].anchor;
+      for (const PlacedScan& scan : solution.scans) {
+        if (!scan.sigma_m) continue;
+        const auto t = predicted_target_from_source(solution, scan.id, anchor);
+        const double error_m = displacement_m(*t, world.truth(scan.id, anchor), world.graph.scans[scan.id].centre);
+        sum += std::pow(error_m / *scan.sigma_m, 2) / 3;
+        ++n;
+      }
+    }
+    return std::sqrt(sum / n);
+  };
+  for (const double times : {1.0, 4.0}) {
+    EXPECT_GT(ratio(times), 0.4) << times;
+    EXPECT_LT(ratio(times), 1.6) << times;
+  }
 }
 
 }  // namespace

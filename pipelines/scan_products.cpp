@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kChunkPoints = std::size_t{1}
                                      << 16;   // 1.2 MB with intensity and colour: fits the second-level cache
-constexpr const char* kSummaryVersion = "4";  // of summarise() below; what goes into it is in the regions' key
+constexpr const char* kSummaryVersion = "5";  // of summarise() below; what goes into it is in the regions' key
 constexpr std::size_t kOutlinePoints = 2000;
 
 class Stopwatch {
@@ -119,12 +119,6 @@ std::vector<float> heights_of_keypoints(const SampledScan& scan, const FeatureCl
   return heights;
 }
 
-GroundPlan plan_of(const SampledScan& scan, const DominantAxis& axis, const Eigen::Vector3d& middle) {
-  return ground_plan(
-      PlanPoints{scan.points, scan.normals, scan.variation, middle.cast<float>(), static_cast<float>(scan.voxel_m)},
-      z_from_axis(axis.direction), GroundPlanOptions{});
-}
-
 std::string replaced(std::string text, const std::string& old_text, const std::string& new_text) {
   for (std::size_t at = text.find(old_text); at != std::string::npos; at = text.find(old_text, at + new_text.size())) {
     text.replace(at, old_text.size(), new_text);
@@ -188,21 +182,15 @@ ScanSummary summarise(const ScanProduct& product) {
   out.heights_voxels = heights_of_keypoints(scan, product.features);
   if (!product.features.axes.empty()) {
     const DominantAxis& axis = product.features.axes.front();
-    GroundPlan plan = plan_of(scan, axis, out.centre);
-    out.columns = std::move(plan.columns);
-    out.plan_cell_m = plan.cell_m;
+    const PlanPoints points{scan.points, scan.normals, scan.variation, out.centre.cast<float>(),
+                            static_cast<float>(scan.voxel_m)};
+    out.plan = ground_plan(points, z_from_axis(axis.direction), GroundPlanOptions{});
+    out.plan->levels.clear();  // only columns are compared
     out.knows_up = axis.knows_its_end();
   }
   std::tie(out.outline, out.outline_cell_m) = outline_of(scan);
   out.notes = scan.notes;
   return out;
-}
-
-std::optional<GroundPlan> plan_of(const ScanSummary& summary) {
-  if (summary.columns.empty()) return std::nullopt;
-  GroundPlan plan{summary.columns, {}, 0, summary.plan_cell_m};
-  for (const Column& c : plan.columns) plan.radius_m = std::max(plan.radius_m, c.p.norm());
-  return plan;
 }
 
 Result<SampledScan> ProductMaker::sampled(const ScanPlan& plan, std::vector<StageTime>& times) const {

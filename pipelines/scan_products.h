@@ -60,23 +60,20 @@ struct ScanSummary {
   std::uint32_t dimension = 0;
   std::vector<std::uint8_t> descriptors;  ///< of the keypoints, 255 for 1: enough for choosing pairs
   std::vector<float> heights_voxels;      ///< of the keypoints above the station; empty if the vertical is unknown
-  std::vector<Column> columns;  ///< of the ground plan along the likeliest vertical; empty where there is none
-  float plan_cell_m = 0;
-  bool knows_up = false;                 ///< which end of that vertical is up
-  std::vector<Eigen::Vector3f> outline;  ///< points spread over the scan, local frame, for maps and predicted overlaps
-  float outline_cell_m = 0;              ///< one outline point per cell of this size
+  std::optional<GroundPlan> plan;         ///< along the likeliest vertical, without levels; absent where there is none
+  bool knows_up = false;                  ///< which end of that vertical is up
+  std::vector<Eigen::Vector3f> outline;   ///< points spread over the scan, local frame, for maps and predicted overlaps
+  float outline_cell_m = 0;               ///< one outline point per cell of this size
   std::vector<std::string> notes;
   template <class F>
   void fields(F&& f) {
     f(voxel_m), f(local_origin_in_scan), f(station_kind), f(station), f(station_in_file), f(spacing_m), f(num_read),
         f(num_dropped);
     f(num_points), f(num_keypoints), f(num_regions), f(centre), f(radius_m), f(product_bytes), f(dimension);
-    f(descriptors), f(heights_voxels), f(columns), f(plan_cell_m), f(knows_up), f(outline), f(outline_cell_m), f(notes);
+    f(descriptors), f(heights_voxels), f(plan), f(knows_up), f(outline), f(outline_cell_m), f(notes);
   }
 };
 ScanSummary summarise(const ScanProduct& product);
-/// The ground plan that a summary keeps, without its levels; none if the scan shows no vertical.
-std::optional<GroundPlan> plan_of(const ScanSummary& summary);
 
 /// Seconds and whether the store had it, by stage.
 struct StageTime {

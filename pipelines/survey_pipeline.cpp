@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <new>
+#include <utility>
 
 #include "pipelines/bridge_checks.h"
 #include "pipelines/byte_gate.h"
@@ -224,14 +225,14 @@ class SurveyGraph {
       const auto at = positions.by_name.find(name);
       return at != positions.by_name.end() ? std::optional(at->second) : std::nullopt;
     };
-    for (const ScanOutcome& scan : out_.scans) {
+    for (ScanOutcome& scan : out_.scans) {
       const std::string& name = scan.ref.name;
       CandidateInput input{scan.id, name, {}, {}, false, position_of(name)};
       if (scan.summary && !scan.error) {
-        const ScanSummary& summary = *scan.summary;
+        ScanSummary& summary = *scan.summary;
         const std::size_t count = summary.dimension == 0 ? 0 : summary.descriptors.size() / summary.dimension;
         input.descriptors = {summary.descriptors, count, summary.heights_voxels};
-        input.plan = plan_of(summary);
+        input.plan = std::exchange(summary.plan, std::nullopt);
         input.knows_up = summary.knows_up;
       } else if (!scan.missing) {  // what is missing takes part, to look ahead
         continue;
@@ -253,7 +254,6 @@ class SurveyGraph {
       if (!scan.summary) continue;
       std::vector<std::uint8_t>().swap(scan.summary->descriptors);
       std::vector<float>().swap(scan.summary->heights_voxels);
-      std::vector<Column>().swap(scan.summary->columns);
     }
   }
 

@@ -36,6 +36,10 @@ struct Level {
   Eigen::Vector2f p;
   float z;
   bool up;
+  template <class F>
+  void fields(F&& f) {
+    f(p), f(z), f(up);
+  }
 };
 
 /// Metres, about the scan's centroid, z along the vertical.
@@ -44,6 +48,10 @@ struct GroundPlan {
   std::vector<Level> levels;
   float radius_m = 0;  ///< of the columns about the origin of the plan
   float cell_m = 0;    ///< one column a cell of this edge
+  template <class F>
+  void fields(F&& f) {
+    f(columns), f(levels), f(radius_m), f(cell_m);
+  }
 };
 
 struct GroundPlanOptions {

@@ -25,7 +25,7 @@ using Pair = std::pair<int, int>;  // positions among the scans sorted by name, 
 struct Survey {
   std::vector<const CandidateInput*> scans;
   std::vector<double> likeness;  // of words; n x n, symmetric
-  std::vector<double> promise;   // n x n: what each row's scan expects of each other, about 1 at best
+  std::vector<double> promise;   // n x n: what each row's scan expects of each other, 1 at best
   std::vector<double> scores;    // likewise: promise, glances and distance together
   CandidateOptions options;
 
@@ -114,7 +114,7 @@ std::vector<double> likeness_of_plans(const Survey& survey) {
 }
 
 /// What each scan expects of each other: the ranks that words and plans give it, fused. Where one of two has no plan,
-/// words speak for both.
+/// or plans were not asked (`of_plans` is empty), words speak for both.
 void fuse(Survey& survey, const std::vector<double>& of_plans) {
   constexpr double kSoftening = 5;         // ranks within about this many of each other are nearly equal
   constexpr double kBetweenEquals = 1e-3;  // of pairs with equal ranks the one with more words in common
@@ -133,10 +133,15 @@ void fuse(Survey& survey, const std::vector<double>& of_plans) {
         survey.promise[a * n + others[k]] += weight(others[k]) * kSoftening / (kSoftening + static_cast<double>(rank));
       }
     };
-    const auto has_plans = [&](std::size_t b) { return survey.scans[a]->plan && survey.scans[b]->plan; };
+    const auto has_plans = [&](std::size_t b) {
+      return !of_plans.empty() && survey.scans[a]->plan && survey.scans[b]->plan;
+    };
     add_ranks(survey.likeness, [&](std::size_t b) { return has_plans(b) ? 0.5 : 1.0; });
-    add_ranks(of_plans, [](std::size_t) { return 0.5; });
-    for (std::size_t b = 0; b < n; ++b) survey.promise[a * n + b] += kBetweenEquals * survey.likeness[a * n + b];
+    if (!of_plans.empty()) add_ranks(of_plans, [](std::size_t) { return 0.5; });
+    for (std::size_t b = 0; b < n; ++b) {
+      double& promise = survey.promise[a * n + b];
+      promise += kBetweenEquals * (survey.likeness[a * n + b] - promise);
+    }
   }
 }
 
@@ -283,10 +288,10 @@ CandidateGraph propose_candidates(std::span<const CandidateInput> scans, const C
             [](const CandidateInput* a, const CandidateInput* b) { return a->name < b->name; });
   compare(survey);
   const bool all_pairs = survey.size() <= options.all_pairs_up_to;
-  fuse(survey,
-       all_pairs || options.only_groups ? std::vector<double>(survey.likeness.size(), 0.0) : likeness_of_plans(survey));
+  const bool choosy = !all_pairs && !options.only_groups;  // otherwise scores only order what is tried
+  fuse(survey, choosy ? likeness_of_plans(survey) : std::vector<double>{});
   compute_scores(survey, {});
-  if (cast && !all_pairs && !options.only_groups) compute_scores(survey, glances_at(survey, cast));
+  if (cast && choosy) compute_scores(survey, glances_at(survey, cast));
   CandidateGraph graph;
   std::map<Pair, const char*> chosen;
   add_groups(survey, chosen, graph.warnings);

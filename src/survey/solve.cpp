@@ -308,14 +308,19 @@ TrackRecord track_record(const Solver& s, const std::vector<char>& in_loop) {
   return record;
 }
 
-/// Accepted links on a loop of accepted links; without `guided`, of those that were not told where to look.
-std::vector<char> on_loops(const Solver& s, bool guided) {
+/// Accepted links that have a vote: those that were told where to look and those that free space doubts have none.
+std::vector<int> accepted_voters(const Solver& s) {
   std::vector<int> voters = s.with_verdict(Verdict::accepted);
-  std::erase_if(voters, [&](int e) { return !s.measurements[e].votes && !guided; });
-  const std::vector<int> tree = spanning_edges(s.num_nodes(), s.measurements, voters);
+  std::erase_if(voters, [&](int e) { return !s.measurements[e].votes; });
+  return voters;
+}
+
+/// Links on a loop of `links`.
+std::vector<char> on_loops(const Solver& s, const std::vector<int>& links) {
+  const std::vector<int> tree = spanning_edges(s.num_nodes(), s.measurements, links);
   const SpanningForest forest = forest_of(s.num_nodes(), s.measurements, tree);
   std::vector<char> in_loop(s.measurements.size(), 0);
-  for (const int e : voters) {
+  for (const int e : links) {
     if (std::binary_search(tree.begin(), tree.end(), e)) continue;
     in_loop[e] = 1;
     for (const int t : tree_path(forest, s.measurements[e].source, s.measurements[e].target)) in_loop[t] = 1;
@@ -326,15 +331,18 @@ std::vector<char> on_loops(const Solver& s, bool guided) {
 /// A link that no loop confirms is worth what the pair stage's word is worth in this survey: where loops refute many
 /// of the links that they can judge, one more that they cannot judge joins nothing. True if any was taken out.
 bool doubt_bridges(Solver& s) {
-  const std::vector<char> in_loop = on_loops(s, false), in_any_loop = on_loops(s, true);
+  const std::vector<char> in_loop = on_loops(s, accepted_voters(s));
   const TrackRecord record = track_record(s, in_loop);
   if (record.judged < kFewestJudged || record.wrong <= record.expected) return false;
   const double scale = std::log((1 - record.wrong) / record.wrong) - std::log((1 - record.expected) / record.expected);
+  const SpanningForest parts =
+      forest_of(s.num_nodes(), s.measurements, spanning_edges(s.num_nodes(), s.measurements, accepted_voters(s)));
   bool any = false;
   for (const int e : s.with_verdict(Verdict::accepted)) {
     if (in_loop[e] || s.link_of(e).link.by_hand == ByHand::added) continue;
-    if (!s.measurements[e].votes && in_any_loop[e]) continue;  // it joins nothing
-    const double probability = std::min(1 - record.wrong, probability_of(s.measurements[e].log_odds + scale));
+    const Measurement& m = s.measurements[e];
+    if (!m.votes && parts.root[m.source] == parts.root[m.target]) continue;  // it joins nothing
+    const double probability = std::min(1 - record.wrong, probability_of(m.log_odds + scale));
     if (probability >= 1.0 - s.options.undecided_wrong_probability) continue;
     s.judge(
         e, Verdict::rejected,
@@ -375,7 +383,7 @@ bool await_witnesses(Solver& s) {
   const double share = share_that_fits(s);
   if (share >= kFittedShare) return false;
   const double scale = std::log(share / (1 - share)) - std::log(kFittedShare / (1 - kFittedShare));
-  const std::vector<char> in_loop = on_loops(s, false);
+  const std::vector<char> in_loop = on_loops(s, accepted_voters(s));
   std::vector<int> found_alone = s.with_verdict(Verdict::accepted);
   std::erase_if(found_alone, [&](int e) { return s.link_of(e).link.guided; });
   const SpanningForest parts =
@@ -428,7 +436,7 @@ double closure_of_refuted(const Solver& s) {
 /// word alone: every link becomes ambiguous, as probable as the share that stood, and agreement is worth what it is
 /// worth among the refuted. Links taken out or added by hand stay. True if it came to that.
 bool distrust_all(Solver& s, const PoseGraph& graph, const SolveOptions& options) {
-  const TrackRecord record = track_record(s, on_loops(s, false));
+  const TrackRecord record = track_record(s, on_loops(s, accepted_voters(s)));
   if (record.judged < kFewestJudged ||
       record.wrong < std::max(options.undecided_wrong_probability, 2 * record.expected))
     return false;
@@ -484,7 +492,7 @@ void weigh_by_precision(Solver& s) {
 /// does.
 int loosest_promoted(const Solver& s) {
   constexpr double kLooseFloors = 2;
-  const std::vector<char> in_loop = on_loops(s, true);
+  const std::vector<char> in_loop = on_loops(s, s.with_verdict(Verdict::accepted));
   int loosest = -1;
   double most = kLooseFloors;
   for (const int e : s.with_verdict(Verdict::accepted)) {
@@ -526,7 +534,7 @@ LinkError error_at(const Measurement& m, const std::vector<Transform>& root_from
 
 /// Accepted links that lie on a loop of links that were not told where to look.
 void mark_loops(Solver& s) {
-  const std::vector<char> in_loop = on_loops(s, false);
+  const std::vector<char> in_loop = on_loops(s, accepted_voters(s));
   for (int e = 0; e < static_cast<int>(s.measurements.size()); ++e) {
     if (!in_loop[e]) continue;
     s.link_of(e).in_loop = true;

@@ -484,6 +484,30 @@ TEST(Solve, WhatABridgeLedToDoesNotHoldIt) {
   EXPECT_EQ(find_link(solution, 3, 6)->link.result.verdict, Verdict::ambiguous);
 }
 
+// Loops refute four of this survey's links; what followed the link that no loop confirms goes with it.
+TEST(Solve, WhatADoubtedBridgeLedToGoesWithIt) {
+  const auto solved = [](bool guided) {
+    World world(12);
+    for (int i = 0; i < 8; ++i) world.exact(i, i + 1, 0.99);
+    for (int i = 0; i < 7; ++i) world.exact(i, i + 2, 0.99);
+    for (const auto& [a, b] : {std::pair(0, 5), std::pair(1, 6), std::pair(2, 7), std::pair(3, 8)})
+      world.wrong(a, b, 0.98);
+    for (const auto& [a, b] : {std::pair(9, 10), std::pair(10, 11), std::pair(9, 11)}) world.exact(a, b, 0.99);
+    world.exact(8, 9, 0.95);
+    for (const auto& [a, b] : {std::pair(7, 10), std::pair(6, 11)}) world.exact(a, b, 0.99).guided = guided;
+    return solve(world.graph, {});
+  };
+  const Solution doubted = solved(true), held = solved(false);
+  EXPECT_EQ(held.components.front().scans.size(), 12u);
+  EXPECT_EQ(doubted.components.front().scans.size(), 9u);
+  for (const auto& [a, b] : {std::pair(8, 9), std::pair(7, 10), std::pair(6, 11)}) {
+    const SolvedLink* link = find_link(doubted, a, b);
+    EXPECT_EQ(link->link.result.verdict, Verdict::rejected);
+    EXPECT_NE(link->link.result.reason.find("no loop confirms it, and loops refute"), std::string::npos)
+        << link->link.result.reason;
+  }
+}
+
 TEST(Solve, BelievedLinksWeighByWhatTheyKnow) {
   World world(3);
   world.exact(1, 0), world.exact(2, 1);

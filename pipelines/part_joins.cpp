@@ -84,20 +84,30 @@ double score_of(const PairResult& result) {
   return at != result.evidence.end() ? at->second : 0;
 }
 
-}  // namespace
-
-std::vector<PartJoin> possible_joins(const Solution& solution, const Summaries& summaries) {
+std::vector<PartJoin> joins_by(const Solution& solution, const Summaries& summaries,
+                               const std::function<bool(const SolvedLink&)>& admits) {
   std::vector<PartJoin> joins;
   for (const SolvedLink& solved : solution.links) {
     const PairResult& result = solved.link.result;
     const PlacedScan *source = solution.find(solved.link.source), *target = solution.find(solved.link.target);
-    if (result.verdict != Verdict::ambiguous || !result.target_from_source || source == nullptr || target == nullptr ||
+    if (!admits(solved) || !result.target_from_source || source == nullptr || target == nullptr ||
         source->component == target->component)
       continue;
     joins.push_back({&solved, *result.target_from_source, score_of(result), {}});
   }
   find_pairs_across(joins, solution, summaries);
   return joins;
+}
+
+}  // namespace
+
+std::vector<PartJoin> possible_joins(const Solution& solution, const Summaries& summaries) {
+  return joins_by(solution, summaries, [](const SolvedLink& l) { return l.link.result.verdict == Verdict::ambiguous; });
+}
+
+std::vector<PartJoin> refuted_between_parts(const Solution& solution, const Summaries& summaries) {
+  return joins_by(solution, summaries,
+                  [](const SolvedLink& l) { return !l.link.refuted.empty() && l.measured == Verdict::accepted; });
 }
 
 std::vector<PartJoin> rival_joins(std::span<const PartJoin> joins, const Solution& solution,

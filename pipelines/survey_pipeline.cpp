@@ -329,6 +329,7 @@ class SurveyGraph {
   static void keep(PairOutcome& pair, PairResult result, bool guided) {
     if (guided && result.verdict <= pair.result.verdict) return;
     pair.refuted.clear(), pair.confirmed.clear();
+    pair.acquitted = false;
     pair.result = std::move(result);
     pair.guided = guided;
   }
@@ -369,7 +370,7 @@ class SurveyGraph {
   }
 
   /// Solves, asks the scans on both sides of links without a loop and of ambiguous links between parts, and solves
-  /// again without those they refute and with those they confirm.
+  /// again without those they refute and with those they confirm or, in the end, acquit.
   void solve_and_check() {
     const ModelSources sources = model_sources();
     const auto check = [&](std::span<const PosedPair> pairs) { return check_poses(pairs, sources, events_, stop_); };
@@ -381,8 +382,10 @@ class SurveyGraph {
       if (take_out(refuted_bridge(out_.solution, outlined_scans(), check))) continue;
       joins_ = possible_joins(out_.solution, summaries_of(outlined_scans()));
       if (take_out(refuted_joins(joins_, outlined_scans(), check))) continue;
-      if (!bring_in(confirmed_joins(joins_, out_.solution, outlined_scans(), check, settings_.pair.accept_probability)))
-        return;
+      if (bring_in(confirmed_joins(joins_, out_.solution, outlined_scans(), check, settings_.pair.accept_probability)))
+        continue;
+      const auto refuted = refuted_between_parts(out_.solution, summaries_of(outlined_scans()));
+      if (!bring_back(acquitted_links(refuted, check))) return;
     }
   }
 
@@ -402,6 +405,16 @@ class SurveyGraph {
     for (const ConfirmedLink& link : all) {
       const auto at = index_of_pair_.find(std::minmax(link.source, link.target));
       found = out_.pairs[at->second].confirm(link.reason, link.probability) || found;
+    }
+    return found;
+  }
+
+  /// True if any was not brought back before.
+  bool bring_back(const std::vector<std::pair<int, int>>& all) {
+    bool found = false;
+    for (const auto& [source, target] : all) {
+      const auto at = index_of_pair_.find(std::minmax(source, target));
+      found = out_.pairs[at->second].acquit() || found;
     }
     return found;
   }

@@ -44,6 +44,7 @@ struct PairOutcome {
   double seconds = 0;         ///< of this run
   PairResult result;          ///< between local frames, before solving
   std::string refuted;        ///< why the scans around it forbid the link (bridge_checks.h); empty if they do not
+  bool acquitted = false;     ///< refuted once and brought back: the next time is final
 
   std::string confirmed;  ///< why they confirm an ambiguous one (confirmed_joins.h); empty if they do not
   double confirmed_probability = 0;
@@ -52,6 +53,13 @@ struct PairOutcome {
   bool refute(const std::string& reason) {
     if (!refuted.empty()) return false;
     refuted = reason;
+    return true;
+  }
+  /// False if it was before.
+  bool acquit() {
+    if (acquitted) return false;
+    acquitted = true;
+    refuted.clear();
     return true;
   }
   /// False if it was confirmed or refuted before.

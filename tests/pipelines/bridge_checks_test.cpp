@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "pipelines/line_of_stations.h"
+#include "pipelines/survey_pipeline.h"
 
 namespace isthmus::pipelines {
 namespace {
@@ -132,12 +134,115 @@ TEST(BridgeChecks, WhatWasFoundWhereTheWrongLinkPointedGoesWithIt) {
   EXPECT_NE(refuted[1].reason.find("believed where s3 - s2 pointed"), std::string::npos);
 }
 
-TEST(BridgeChecks, LinksThatAnotherSpansAreNotQuestioned) {
+/// The pairs of `forbidden`, whichever way round, are; all others are fine.
+PoseChecker forbidding(std::set<std::pair<int, int>> forbidden) {
+  return [forbidden = std::move(forbidden)](std::span<const PosedPair> pairs) {
+    std::vector<std::optional<PoseCheck>> out;
+    for (const PosedPair& p : pairs)
+      out.emplace_back(forbidden.contains(std::minmax(p.source, p.target)) ? kForbidden : kFine);
+    return out;
+  };
+}
+
+std::set<std::pair<int, int>> links_of(const std::vector<RefutedLink>& refuted) {
+  std::set<std::pair<int, int>> out;
+  for (const RefutedLink& link : refuted) out.insert(std::minmax(link.source, link.target));
+  return out;
+}
+
+TEST(BridgeChecks, TwoPartsThatTwoLinksSpanAreNotTakenApartByAFewPairsAcross) {
   TwoParts parts;
   parts.link(4, 1, Verdict::accepted);
+  EXPECT_TRUE(refuted_bridge(parts.solution, parts.scans, forbidding({{0, 3}})).empty());
+}
+
+// 0 - 1 - 2 in a triangle, and 3 on two links that agree: a room that equals the right one explains both.
+TEST(BridgeChecks, AScanThatHangsInTheWrongPlaceByTwoLinksIsTakenOut) {
+  LineOfStations line(5, 35);
+  for (const auto& [s, t] : {std::pair{1, 0}, std::pair{2, 0}, std::pair{2, 1}, std::pair{4, 1}, std::pair{4, 0},
+                             std::pair{3, 2}, std::pair{3, 1}})
+    line.link(s, t, Verdict::accepted);
+  EXPECT_TRUE(refuted_bridge(line.solution, line.scans, forbidding({})).empty());
+  const auto refuted = refuted_bridge(line.solution, line.scans, forbidding({{0, 3}, {3, 4}}));
+  EXPECT_EQ(links_of(refuted), (std::set<std::pair<int, int>>{{1, 3}, {2, 3}}));
+}
+
+/// 0-1-2 and 4-5-6, and scan 3 on two links to either: a cut scan.
+struct CutScan : LineOfStations {
+  explicit CutScan(double probability_of_second) : LineOfStations(7, 35) {
+    for (const auto& [s, t] :
+         {std::pair{1, 0}, std::pair{2, 0}, std::pair{2, 1}, std::pair{5, 4}, std::pair{6, 4}, std::pair{6, 5}})
+      link(s, t, Verdict::accepted);
+    for (const auto& [s, t] : {std::pair{3, 2}, std::pair{3, 1}})
+      link(s, t, Verdict::accepted).result.probability = 0.99;
+    for (const auto& [s, t] : {std::pair{4, 3}, std::pair{5, 3}})
+      link(s, t, Verdict::accepted).result.probability = probability_of_second;
+  }
+};
+const std::set<std::pair<int, int>> kAllAcross = {{0, 4}, {1, 4}, {2, 4}, {0, 5}, {1, 5},
+                                                  {2, 5}, {0, 6}, {1, 6}, {2, 6}};
+
+TEST(BridgeChecks, OfTwoBranchesThatForbidEachOtherTheLikelierHoldsTheScanBetween) {
+  const CutScan survey(0.9999);
+  const auto refuted = refuted_bridge(survey.solution, survey.scans, forbidding(kAllAcross));
+  EXPECT_EQ(links_of(refuted), (std::set<std::pair<int, int>>{{1, 3}, {2, 3}}));
+}
+
+TEST(BridgeChecks, WhereNobodyKnowsWhichBranchIsWrongTheScanStaysInNeither) {
+  const CutScan survey(0.995);
+  const auto refuted = refuted_bridge(survey.solution, survey.scans, forbidding(kAllAcross));
+  EXPECT_EQ(links_of(refuted), (std::set<std::pair<int, int>>{{1, 3}, {2, 3}, {3, 4}, {3, 5}}));
+  EXPECT_NE(refuted[0].reason.find(", or with s"), std::string::npos) << refuted[0].reason;
+}
+
+// The pairs of the scan itself decide where the links' own words do not.
+TEST(BridgeChecks, ThePairsOfTheScanBetweenSayWhichBranchIsWrong) {
+  const CutScan survey(0.99);
+  auto forbidden = kAllAcross;
+  forbidden.insert({3, 6});
+  const auto refuted = refuted_bridge(survey.solution, survey.scans, forbidding(forbidden));
+  EXPECT_EQ(links_of(refuted), (std::set<std::pair<int, int>>{{3, 4}, {3, 5}}));
+}
+
+/// Two parts, and a link between them that was accepted by itself and refuted since.
+struct RefutedBetween : SplitParts {
+  RefutedBetween() {
+    solution.links.pop_back();
+    solution.links.back().measured = Verdict::accepted;
+    solution.links.back().link.refuted = "for a reason that is gone";
+    solution.links.back().link.result.verdict = Verdict::rejected;
+  }
+};
+
+TEST(Acquittal, ARefutedLinkComesBackWhereTheScansAroundItMeetAndNoneIsForbidden) {
+  const RefutedBetween parts;
+  const auto joins = refuted_between_parts(parts.solution, summaries_of(parts.scans));
+  ASSERT_EQ(joins.size(), 1U);
   std::vector<PosedPair> asked;
-  EXPECT_TRUE(refuted_bridge(parts.solution, parts.scans, answering(asked, {kForbidden})).empty());
-  EXPECT_TRUE(asked.empty());
+  const auto back = acquitted_links(joins, answering(asked, {kFine}));
+  ASSERT_EQ(back.size(), 1U);
+  EXPECT_EQ(back[0], std::pair(3, 2));
+  EXPECT_FALSE(asked.empty());
+  EXPECT_TRUE(acquitted_links(joins, answering(asked, {kFine, kFine, kForbidden})).empty());
+  EXPECT_TRUE(acquitted_links(joins, answering(asked, {PoseCheck{0.02, 0}})).empty()) << "nobody speaks for it";
+}
+
+TEST(Acquittal, OnlyLinksBetweenPartsThatWereAcceptedByThemselvesAppeal) {
+  RefutedBetween parts;
+  parts.solution.links.back().measured = Verdict::ambiguous;
+  EXPECT_TRUE(refuted_between_parts(parts.solution, summaries_of(parts.scans)).empty());
+  const SplitParts open;
+  EXPECT_TRUE(refuted_between_parts(open.solution, summaries_of(open.scans)).empty()) << "not refuted";
+}
+
+TEST(Acquittal, OnlyTheFirstCounts) {
+  PairOutcome pair;
+  EXPECT_TRUE(pair.refute("a"));
+  EXPECT_TRUE(pair.acquit());
+  EXPECT_TRUE(pair.refuted.empty());
+  EXPECT_TRUE(pair.refute("b"));
+  EXPECT_FALSE(pair.acquit());
+  EXPECT_EQ(pair.refuted, "b");
 }
 
 // Where rooms repeat, an ambiguous link agrees with the wrong one: their loop proves nothing.

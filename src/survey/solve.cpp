@@ -487,28 +487,31 @@ void weigh_by_precision(Solver& s) {
   }
 }
 
-/// Links that the pair stage left open and loops confirmed within the wide noise: seen from the precise poses, do they
-/// still meet? The one that misses most, by more than two floors (a voxel), if loops hold what it joins; -1 if none
-/// does.
-int loosest_promoted(const Solver& s) {
-  constexpr double kLooseFloors = 2;
+/// Links that were believed for others' sake, within the wide noise: left open by the pair stage and confirmed by
+/// loops, or found where the poses pointed. Seen from the precise poses, do they still meet? The one that misses most,
+/// by more than a floor (half a voxel) in place or two in rotation, if loops hold what it joins; -1 if none does.
+int loosest_follower(const Solver& s) {
+  constexpr double kLooseFloors = 1, kLooseFloorsTurned = 2;
   const std::vector<char> in_loop = on_loops(s, s.with_verdict(Verdict::accepted));
   int loosest = -1;
-  double most = kLooseFloors;
+  double most = 1;
   for (const int e : s.with_verdict(Verdict::accepted)) {
     const Measurement& m = s.measurements[e];
-    if (!in_loop[e] || s.links[m.link].measured == Verdict::accepted) continue;
+    const SolvedLink& link = s.links[m.link];
+    const bool by_its_own_word = link.measured == Verdict::accepted && !link.link.guided;
+    if (!in_loop[e] || by_its_own_word || link.link.by_hand == ByHand::added) continue;
     const Vector6d d =
         disagreement(m.target_from_source.b_from_a, s.root_from_node[m.target].inverse() * s.root_from_node[m.source]);
-    const double floors = floors_of(d, m);
-    if (floors > most) most = floors, loosest = e;
+    const double missed = std::max(d.head<3>().norm() / (kLooseFloors * m.floor_m),
+                                   d.tail<3>().norm() / (kLooseFloorsTurned * m.floor_rad));
+    if (missed > most) most = missed, loosest = e;
   }
   return loosest;
 }
 
 void place_by_precision(Solver& s) {
   weigh_by_precision(s);
-  for (int e = loosest_promoted(s); e >= 0; e = loosest_promoted(s)) {
+  for (int e = loosest_follower(s); e >= 0; e = loosest_follower(s)) {
     s.judge(e, Verdict::rejected, outlier_reason(s, e));
     s.links[s.measurements[e].link].information_used =
         information_in_local(s.measurements[e], s.scans[s.measurements[e].source]);

@@ -530,17 +530,30 @@ TEST(Solve, ALinkThatOverstatesItselfIsHeldBackByTheOthers) {
   EXPECT_LT(worst_error_m(world, solution), without + 0.05 * kVoxel);
 }
 
-TEST(Solve, WhatLoopsPromotedButPrecisePosesMissIsNotALink) {
-  World world(4);
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < i; ++j)
-      if (i != 3 || j != 0) world.exact(i, j);
-  world.shifted(3, 0, 1.6 * kVoxel, 0.6, Verdict::ambiguous);
-  const Solution solution = solve(world.graph, {});
-  const SolvedLink* loose = find_link(solution, 3, 0);
-  EXPECT_EQ(loose->link.result.verdict, Verdict::rejected);
-  EXPECT_NE(loose->link.result.reason.find("disagrees with the loop"), std::string::npos) << loose->link.result.reason;
-  EXPECT_LT(worst_error_m(world, solution), 0.01 * kVoxel);
+TEST(Solve, WhatFollowedOthersButMissesThePrecisePosesIsNotALink) {
+  const auto verdict = [](double voxels, Verdict measured, bool guided) {
+    World world(4);
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < i; ++j)
+        if (i != 3 || j != 0) world.exact(i, j);
+    world.shifted(3, 0, voxels * kVoxel, measured == Verdict::accepted ? 0.98 : 0.6, measured).guided = guided;
+    const Solution solution = solve(world.graph, {});
+    const PairResult result = find_link(solution, 3, 0)->link.result;
+    if (result.verdict == Verdict::rejected) {
+      EXPECT_LT(worst_error_m(world, solution), 0.01 * kVoxel) << "it bends nothing";
+    }
+    return result;
+  };
+  for (const double voxels : {0.7, 1.2}) {
+    const PairResult promoted = verdict(voxels, Verdict::ambiguous, false),
+                     guided = verdict(voxels, Verdict::accepted, true);
+    EXPECT_EQ(promoted.verdict, Verdict::rejected);
+    EXPECT_NE(promoted.reason.find("disagrees with the loop"), std::string::npos) << promoted.reason;
+    EXPECT_EQ(guided.verdict, Verdict::rejected);
+    EXPECT_EQ(verdict(voxels, Verdict::accepted, false).verdict, Verdict::accepted) << "it has a word of its own";
+  }
+  EXPECT_EQ(verdict(0.3, Verdict::ambiguous, false).verdict, Verdict::accepted);
+  EXPECT_EQ(verdict(0.3, Verdict::accepted, true).verdict, Verdict::accepted);
 }
 
 TEST(Solve, UncertaintyGrowsAlongAChain) {

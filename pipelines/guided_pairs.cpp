@@ -1,5 +1,6 @@
 #include "pipelines/guided_pairs.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
 #include <set>
@@ -13,10 +14,20 @@ namespace {
 constexpr float kReachCells = 1.5F;  // as overlaps are measured everywhere: within 1.5 cells
 
 /// Share of the source's outline that has an outline point of the target nearby.
-double covered(const ScanSummary& source, const PointGrid& target, float reach_m, const Transform& target_from_source) {
+double covered(const ScanSummary& source, const ScanSummary& target, float reach_m,
+               const Transform& target_from_source) {
   const Eigen::Isometry3f t = target_from_source.cast<float>();
+  Eigen::AlignedBox3f near;  // most points of most pairs are far from all of the target's
+  for (const Eigen::Vector3f& p : target.outline) near.extend(p);
+  near.extend(near.min() - Eigen::Vector3f::Constant(reach_m)),
+      near.extend(near.max() + Eigen::Vector3f::Constant(reach_m));
+  std::vector<Eigen::Vector3f> candidates;
+  for (const Eigen::Vector3f& p : source.outline)
+    if (const Eigen::Vector3f moved = t * p; near.contains(moved)) candidates.push_back(moved);
+  if (candidates.empty()) return 0;
+  const PointGrid grid(target.outline, reach_m);
   std::size_t hits = 0;
-  for (const Eigen::Vector3f& p : source.outline) hits += target.nearest_within(t * p, reach_m).first >= 0 ? 1 : 0;
+  for (const Eigen::Vector3f& p : candidates) hits += grid.nearest_within(p, reach_m).first >= 0 ? 1 : 0;
   return static_cast<double>(hits) / static_cast<double>(std::max<std::size_t>(1, source.outline.size()));
 }
 
@@ -46,9 +57,9 @@ double predicted_overlap(const ScanSummary& source, const ScanSummary& target, c
   const double apart = (target_from_source * source.centre - target.centre).norm();
   if (apart > extent_of(source) + extent_of(target)) return 0;
   const float reach = kReachCells * std::max(source.outline_cell_m, target.outline_cell_m);
-  const double of_source = covered(source, PointGrid(target.outline, reach), reach, target_from_source);
+  const double of_source = covered(source, target, reach, target_from_source);
   if (of_source < kLeastPredictedOverlap) return of_source;
-  return std::min(of_source, covered(target, PointGrid(source.outline, reach), reach, target_from_source.inverse()));
+  return std::min(of_source, covered(target, source, reach, target_from_source.inverse()));
 }
 
 std::vector<GuidedPair> propose_guided_pairs(const Solution& solution, std::span<const OutlinedScan> scans,

@@ -186,4 +186,26 @@ std::vector<std::optional<PoseCheck>> check_poses(std::span<const PosedPair> pai
   return Looking<PoseCheck>(std::move(ids), look, sources, events, stop).run();
 }
 
+std::vector<float> compare_plans(std::span<const std::pair<int, int>> pairs,
+                                 const std::function<float(std::size_t)>& compare, const ModelSources& sources,
+                                 const Events& events, const std::atomic<bool>& stop) {
+  std::vector<std::string> inputs;
+  for (const auto& [source, target] : pairs)
+    for (const int id : {source, target}) {
+      const auto plan = sources.plans.find(id);
+      inputs.push_back(plan != sources.plans.end() ? plan->second->summary.digest : std::string());
+    }
+  const store::Key key = store::make_key("plan_likeness", kRegionsVersion, inputs);
+  if (auto known = sources.store.load<std::vector<float>>(key); known && known->size() == pairs.size()) return *known;
+  std::vector<float> answers(pairs.size(), 0.0F);
+  constexpr std::size_t kBetweenNews = 256;
+  for (std::size_t first = 0; first < pairs.size() && !stop; first += kBetweenNews) {
+    const std::size_t count = std::min(kBetweenNews, pairs.size() - first);
+    parallel_for_index(count, 1, [&](std::size_t k) { answers[first + k] = compare(first + k); });
+    events.advance("ground plans", first + count, pairs.size());
+  }
+  if (!stop && !sources.share.only_looks()) sources.store.keep(key, answers);
+  return answers;
+}
+
 }  // namespace isthmus::pipelines

@@ -42,4 +42,10 @@ struct PosedPair {
 std::vector<std::optional<PoseCheck>> check_poses(std::span<const PosedPair> pairs, const ModelSources& sources,
                                                   const Events& events, const std::atomic<bool>& stop);
 
+/// The likeness of the ground plans of all pairs, kept in the store as one product: a survey with one scan more
+/// compares all anew. What is left when `stop` is set is 0, and then nothing is kept.
+std::vector<float> compare_plans(std::span<const std::pair<int, int>> pairs,
+                                 const std::function<float(std::size_t)>& compare, const ModelSources& sources,
+                                 const Events& events, const std::atomic<bool>& stop);
+
 }  // namespace isthmus::pipelines

@@ -240,14 +240,17 @@ class SurveyGraph {
       inputs.push_back(std::move(input));
     }
     const ModelSources sources = model_sources();
-    CandidateGraph graph =
-        propose_candidates(inputs, settings_.candidates, [&](std::span<const std::pair<int, int>> wanted) {
-          std::vector<std::pair<int, int>> pairs(wanted.begin(), wanted.end());
-          std::erase_if(pairs, [&](const auto& pair) {  // a look ahead may not know a scan
-            return !plan_of_.contains(pair.first) || !plan_of_.contains(pair.second);
-          });
-          return screen_pairs(pairs, sources, events_, stop_);
-        });
+    const auto cast = [&](std::span<const std::pair<int, int>> wanted) {
+      std::vector<std::pair<int, int>> pairs(wanted.begin(), wanted.end());
+      std::erase_if(pairs, [&](const auto& pair) {  // a look ahead may not know a scan
+        return !plan_of_.contains(pair.first) || !plan_of_.contains(pair.second);
+      });
+      return screen_pairs(pairs, sources, events_, stop_);
+    };
+    const auto compare = [&](std::span<const std::pair<int, int>> pairs, const std::function<float(std::size_t)>& one) {
+      return compare_plans(pairs, one, sources, events_, stop_);
+    };
+    CandidateGraph graph = propose_candidates(inputs, settings_.candidates, cast, compare);
     for (const std::string& warning : graph.warnings) warn(warning);
     rounds_ = std::make_unique<PairRounds>(std::move(graph), settings_.candidates, inputs.size());
     for (ScanOutcome& scan : out_.scans) {  // what only the choice of pairs needed

@@ -96,20 +96,38 @@ void compare(Survey& survey) {
       if (a != b && !upright(a, b)) survey.likeness[a * n + b] *= with_heights / without;
 }
 
+std::vector<float> compare_in_parallel(std::span<const std::pair<int, int>> pairs,
+                                       const std::function<float(std::size_t)>& compare) {
+  std::vector<float> out(pairs.size(), 0.0F);
+  parallel_for_index(pairs.size(), 1, [&](std::size_t k) { out[k] = compare(k); });
+  return out;
+}
+
 /// How well the plans of each two scans can be laid on each other; 0 where one has none.
-std::vector<double> likeness_of_plans(const Survey& survey) {
+std::vector<double> likeness_of_plans(const Survey& survey, const ComparePlans& compare_plans) {
   const std::size_t n = survey.scans.size();
-  std::vector<double> likeness(n * n, 0.0);
-  parallel_for_index(n, 1, [&](std::size_t a) {
+  std::vector<std::pair<std::size_t, std::size_t>> places;
+  std::vector<std::pair<int, int>> pairs;
+  for (std::size_t a = 0; a < n; ++a)
     for (std::size_t b = a + 1; b < n; ++b) {
       const CandidateInput &first = *survey.scans[a], &second = *survey.scans[b];
       if (!first.plan || !second.plan || !survey.allowed(static_cast<int>(a), static_cast<int>(b))) continue;
-      float most = plan_likeness(*first.plan, *second.plan);
-      if (!first.knows_up || !second.knows_up)
-        most = std::max(most, plan_likeness(*first.plan, upside_down(*second.plan)));
-      likeness[a * n + b] = likeness[b * n + a] = static_cast<double>(most);
+      places.emplace_back(a, b);
+      pairs.emplace_back(first.id, second.id);
     }
-  });
+  const auto compare = [&](std::size_t k) {
+    const CandidateInput &first = *survey.scans[places[k].first], &second = *survey.scans[places[k].second];
+    const float as_is = plan_likeness(*first.plan, *second.plan);
+    if (first.knows_up && second.knows_up) return as_is;
+    return std::max(as_is, plan_likeness(*first.plan, upside_down(*second.plan)));
+  };
+  const std::vector<float> answers =
+      compare_plans ? compare_plans(pairs, compare) : compare_in_parallel(pairs, compare);
+  std::vector<double> likeness(n * n, 0.0);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const auto [a, b] = places[k];
+    likeness[a * n + b] = likeness[b * n + a] = static_cast<double>(answers[k]);
+  }
   return likeness;
 }
 
@@ -280,7 +298,7 @@ bool natural_less(std::string_view a, std::string_view b) {
 }
 
 CandidateGraph propose_candidates(std::span<const CandidateInput> scans, const CandidateOptions& options,
-                                  const CastGlances& cast) {
+                                  const CastGlances& cast, const ComparePlans& compare_plans) {
   Survey survey;
   survey.options = options;
   for (const CandidateInput& scan : scans) survey.scans.push_back(&scan);
@@ -289,7 +307,7 @@ CandidateGraph propose_candidates(std::span<const CandidateInput> scans, const C
   compare(survey);
   const bool all_pairs = survey.size() <= options.all_pairs_up_to;
   const bool choosy = !all_pairs && !options.only_groups;  // otherwise scores only order what is tried
-  fuse(survey, choosy ? likeness_of_plans(survey) : std::vector<double>{});
+  fuse(survey, choosy ? likeness_of_plans(survey, compare_plans) : std::vector<double>{});
   compute_scores(survey, {});
   if (cast && choosy) compute_scores(survey, glances_at(survey, cast));
   CandidateGraph graph;

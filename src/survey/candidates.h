@@ -63,6 +63,12 @@ struct ScreenedPair {
 /// Casts glances at pairs (source, target) of ids; pairs about which a glance says nothing are missing from the answer.
 using CastGlances = std::function<std::vector<ScreenedPair>(std::span<const std::pair<int, int>>)>;
 
+/// Compares the ground plans of pairs of ids: the answers of `compare(k)` for each pair k, a few milliseconds each, may
+/// be called from any thread. Who gives it decides about threads, and may keep answers or leave zeros when told to
+/// stop.
+using ComparePlans = std::function<std::vector<float>(std::span<const std::pair<int, int>> pairs,
+                                                      const std::function<float(std::size_t k)>& compare)>;
+
 /// Bags of visual words compared by tf-idf (Sivic, Zisserman 2003); a word is the signs of a descriptor's distances to
 /// random planes from a fixed seed (locality-sensitive hashing, Charikar 2002), so nothing is trained; where both scans
 /// know their vertical, a word counts only at its own height above the station. Where both have a ground plan, how well
@@ -73,7 +79,7 @@ using CastGlances = std::function<std::vector<ScreenedPair>(std::span<const std:
 /// `screened_per_scan` most alike, ascending by the scans' names: what it finds raises their promise, the others keep a
 /// little of their promise.
 CandidateGraph propose_candidates(std::span<const CandidateInput> scans, const CandidateOptions& options,
-                                  const CastGlances& cast = {});
+                                  const CastGlances& cast = {}, const ComparePlans& compare_plans = {});
 
 /// Names as people sort them: runs of digits compare as numbers ("s2" before "s10").
 bool natural_less(std::string_view a, std::string_view b);

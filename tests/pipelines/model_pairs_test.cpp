@@ -110,5 +110,30 @@ TEST_F(ModelPairs, two_shares_at_the_same_time_share_the_work) {
   EXPECT_EQ(std::set<int>(of_second.begin(), of_second.end()).size(), static_cast<std::size_t>(kScans));
 }
 
+TEST_F(ModelPairs, PlansAreComparedOnceAndAnewWhereAScanIsAnother) {
+  for (ScanPlan& plan : plans_)
+    plan.summary = store::make_key("summary", "1", std::array<std::string, 1>{plan.regions.digest});
+  std::atomic<std::size_t> num_compared{0};
+  const auto compare = [&](std::size_t k) {
+    ++num_compared;
+    return static_cast<float>(k);
+  };
+  const ModelSources sources{plan_of_, store_, {}, {}};
+  const auto compared = [&](const std::atomic<bool>& stop) {
+    return compare_plans(pairs_, compare, sources, {}, stop);
+  };
+  const std::atomic<bool> stopped{true};
+  EXPECT_EQ(compared(stopped), std::vector<float>(pairs_.size(), 0.0F));
+  EXPECT_EQ(num_compared, 0U) << "told to stop";
+  const auto first = compared(never_stop_);
+  EXPECT_EQ(num_compared, pairs_.size()) << "what was stopped is not kept";
+  EXPECT_EQ(first[5], 5.0F);
+  EXPECT_EQ(compared(never_stop_), first);
+  EXPECT_EQ(num_compared, pairs_.size());
+  plans_[3].summary = store::make_key("summary", "1", std::array<std::string, 1>{"another"});
+  compared(never_stop_);
+  EXPECT_EQ(num_compared, 2 * pairs_.size());
+}
+
 }  // namespace
 }  // namespace isthmus::pipelines

@@ -174,10 +174,13 @@ std::vector<RefutedLink> sentenced(std::vector<Accusation> accusations, std::spa
   if (accusations.empty()) return {};
   std::ranges::stable_sort(accusations, std::ranges::greater(), &Accusation::log_odds);
   const Accusation first = accusations.front();
+  const auto has_a_say = [](const Suspect& suspect, const PosedPair& pair) {
+    return suspect.separates(pair.source, pair.target) && !suspect.holds(pair.source, pair.target);
+  };
   const auto shares_a_witness = [&](const Accusation& other) {
     for (std::size_t k = 0; k < pairs.size(); ++k)
-      if (checks[k] && checks[k]->forbidden() && first.suspect->separates(pairs[k].source, pairs[k].target) &&
-          other.suspect->separates(pairs[k].source, pairs[k].target))
+      if (checks[k] && checks[k]->forbidden() && has_a_say(*first.suspect, pairs[k]) &&
+          has_a_say(*other.suspect, pairs[k]))
         return true;
     return false;
   };
@@ -226,11 +229,12 @@ std::vector<RefutedLink> refuted_bridge(const Solution& solution, std::span<cons
   const std::vector<std::optional<PoseCheck>> checks = check(pairs);
   std::vector<Accusation> accusations;
   for (const Suspect& suspect : suspects) {
-    Testimony said = testimony_of(pairs, checks, [&](const PosedPair& pair) {
+    const Testimony said = testimony_of(pairs, checks, [&](const PosedPair& pair) {
       return suspect.separates(pair.source, pair.target) && !suspect.holds(pair.source, pair.target);
     });
-    if (suspect.links.size() > 1) said.num_telling += suspect.links.size();  // that they agree tells as well
-    if (said.refutes()) accusations.push_back({&suspect, said, log_odds_wrong(said, suspect.spokesman())});
+    Testimony with_links = said;  // that several agree tells as well, for whether there is a case at all
+    if (suspect.links.size() > 1) with_links.num_telling += suspect.links.size();
+    if (with_links.refutes()) accusations.push_back({&suspect, said, log_odds_wrong(said, suspect.spokesman())});
   }
   return sentenced(std::move(accusations), pairs, checks, solution, scans);
 }

@@ -195,7 +195,8 @@ std::vector<float> compare_plans(std::span<const std::pair<int, int>> pairs,
       const auto plan = sources.plans.find(id);
       inputs.push_back(plan != sources.plans.end() ? plan->second->summary.digest : std::string());
     }
-  const store::Key key = store::make_key("plan_likeness", kRegionsVersion, inputs);
+  constexpr const char* kRule = "-1";  // of survey/candidates.cpp, which no digest covers: plans whose up is unknown
+  const store::Key key = store::make_key("plan_likeness", std::string(kRegionsVersion) + kRule, inputs);
   if (auto known = sources.store.load<std::vector<float>>(key); known && known->size() == pairs.size()) return *known;
   std::vector<float> answers(pairs.size(), 0.0F);
   constexpr std::size_t kBetweenNews = 256;

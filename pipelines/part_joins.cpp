@@ -106,8 +106,9 @@ std::vector<PartJoin> possible_joins(const Solution& solution, const Summaries& 
 }
 
 std::vector<PartJoin> refuted_between_parts(const Solution& solution, const Summaries& summaries) {
-  return joins_by(solution, summaries,
-                  [](const SolvedLink& l) { return !l.link.refuted.empty() && l.measured == Verdict::accepted; });
+  return joins_by(solution, summaries, [](const SolvedLink& l) {
+    return !l.link.refuted.empty() && l.measured == Verdict::accepted && !l.link.guided;
+  });
 }
 
 std::vector<PartJoin> rival_joins(std::span<const PartJoin> joins, const Solution& solution,

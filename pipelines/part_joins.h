@@ -38,7 +38,8 @@ struct PartJoin {
 /// Every ambiguous link between two components. Those that nothing lies around have nothing across.
 std::vector<PartJoin> possible_joins(const Solution& solution, const Summaries& summaries);
 
-/// Every link between two components that was accepted by itself and refuted since by the scans around it.
+/// Every link between two components that was accepted by itself, not told where to look, and refuted since by the
+/// scans around it.
 std::vector<PartJoin> refuted_between_parts(const Solution& solution, const Summaries& summaries);
 
 /// The rivals of the links of `joins`, likewise, in their order.

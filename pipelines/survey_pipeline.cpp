@@ -376,7 +376,7 @@ class SurveyGraph {
   /// again without those they refute and with those they confirm or, in the end, acquit.
   void solve_and_check() {
     const ModelSources sources = model_sources();
-    const auto check = [&](std::span<const PosedPair> pairs) { return check_poses(pairs, sources, events_, stop_); };
+    const auto check = [&](std::span<const PosedPair> pairs) { return checked(pairs, sources); };
     for (;;) {
       joins_.clear();  // they point into the solution
       out_.graph = graph_of_results();
@@ -390,6 +390,32 @@ class SurveyGraph {
       const auto refuted = refuted_between_parts(out_.solution, summaries_of(outlined_scans()));
       if (!bring_back(acquitted_links(refuted, check))) return;
     }
+  }
+
+  /// Every solution moves all poses a little: what was asked where a pair hardly stood elsewhere is not asked again.
+  std::vector<std::optional<PoseCheck>> checked(std::span<const PosedPair> pairs, const ModelSources& sources) {
+    constexpr double kElsewhereVoxels = 0.1;
+    const auto moved_m = [&](const PosedPair& a, const PosedPair& b) {
+      const ScanSummary& scan = *out_.scans[static_cast<std::size_t>(a.source)].summary;
+      const Transform step = a.target_from_source.inverse() * b.target_from_source;
+      return (step * scan.centre - scan.centre).norm() + scan.radius_m * rotation_angle_rad(step.linear());
+    };
+    std::vector<std::optional<PoseCheck>> answers(pairs.size());
+    std::vector<PosedPair> open;
+    std::vector<std::size_t> places;
+    for (std::size_t k = 0; k < pairs.size(); ++k) {  // a pair may be asked at several poses at once
+      const auto at = checks_.find({pairs[k].source, pairs[k].target});
+      if (at != checks_.end() && moved_m(at->second.first, pairs[k]) <= kElsewhereVoxels * plan_.voxel_m)
+        answers[k] = at->second.second;
+      else
+        open.push_back(pairs[k]), places.push_back(k);
+    }
+    const std::vector<std::optional<PoseCheck>> found = check_poses(open, sources, events_, stop_);
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      answers[places[k]] = found[k];
+      if (found[k]) checks_.insert_or_assign({open[k].source, open[k].target}, std::pair(open[k], *found[k]));
+    }
+    return answers;
   }
 
   /// True if any was not known to be refuted.
@@ -488,8 +514,9 @@ class SurveyGraph {
   ByteGate gate_;
   ProductCache cache_;
   std::map<int, const ScanPlan*> plan_of_;
-  std::size_t scans_done_ = 0;                  // written by the serial barrier only
-  std::size_t pairs_done_ = 0;                  // likewise
+  std::map<std::pair<int, int>, std::pair<PosedPair, PoseCheck>> checks_;  // the last of each pair
+  std::size_t scans_done_ = 0;                                             // written by the serial barrier only
+  std::size_t pairs_done_ = 0;                                             // likewise
   std::atomic<bool> looked_for_unmade_{false};  // by a look ahead: a glance or check that the store does not hold
   std::size_t num_submitted_ = 0;               // pairs of all waves: deals them out to shares
   std::size_t num_pairs_ = 0;                   // written before pairs are submitted

@@ -231,8 +231,13 @@ TEST(Acquittal, OnlyLinksBetweenPartsThatWereAcceptedByThemselvesAppeal) {
   RefutedBetween parts;
   parts.solution.links.back().measured = Verdict::ambiguous;
   EXPECT_TRUE(refuted_between_parts(parts.solution, summaries_of(parts.scans)).empty());
-  const SplitParts open;
-  EXPECT_TRUE(refuted_between_parts(open.solution, summaries_of(open.scans)).empty()) << "not refuted";
+  parts.solution.links.back().measured = Verdict::accepted;
+  EXPECT_EQ(refuted_between_parts(parts.solution, summaries_of(parts.scans)).size(), 1U);
+  parts.solution.links.back().link.guided = true;
+  EXPECT_TRUE(refuted_between_parts(parts.solution, summaries_of(parts.scans)).empty()) << "told where to look";
+  parts.solution.links.back().link.guided = false;
+  parts.solution.links.back().link.refuted.clear();
+  EXPECT_TRUE(refuted_between_parts(parts.solution, summaries_of(parts.scans)).empty()) << "rejected, not refuted";
 }
 
 TEST(Acquittal, OnlyTheFirstCounts) {

@@ -230,10 +230,11 @@ StepLimit step_limit(const ScanModel& source) {
 // Source points against target planes and target points against source planes in one system, about the source's
 // centroid in the target frame.
 NormalEquations both_ways(const ScanModel& source, const ScanModel& target, const Transform& t,
-                          std::span<const std::uint32_t> from, std::span<const std::uint32_t> to, float gate) {
+                          std::span<const std::uint32_t> from, std::span<const std::uint32_t> to, float gate,
+                          MatchWeights weights = MatchWeights::alike) {
   NormalEquations forward, backward;
-  add_point_to_plane(source, target, t, from, false, gate, t * source.centroid.cast<double>(), forward);
-  add_point_to_plane(target, source, t.inverse(), to, false, gate, source.centroid.cast<double>(), backward);
+  add_point_to_plane(source, target, t, from, false, gate, t * source.centroid.cast<double>(), forward, weights);
+  add_point_to_plane(target, source, t.inverse(), to, false, gate, source.centroid.cast<double>(), backward, weights);
   // The backward step moves the target in the source frame; seen from the target it is the inverse motion: x -> -R x.
   Matrix6d to_target = Matrix6d::Zero();
   to_target.topLeftCorner<3, 3>() = -t.linear();
@@ -262,7 +263,7 @@ float gate_of_residuals(const ScanModel& source, const ScanModel& target, const 
   return std::clamp(kSigmas * kSigmaOfMedian * *middle, kNarrowestVoxels * source.voxel_m, widest);
 }
 
-// Steps with a gate as narrow as the residuals allow, until they stand still.
+// Steps with a gate as narrow as the residuals allow, flat surfaces before rough ones, until they stand still.
 void align_closely(const ScanModel& source, const ScanModel& target, std::size_t max_points, Hypothesis& hypothesis) {
   constexpr int kMaxSteps = 12;
   constexpr std::size_t kGatePoints = 4000;
@@ -271,9 +272,14 @@ void align_closely(const ScanModel& source, const ScanModel& target, std::size_t
   const auto gate_from = even_sample(source, kGatePoints), gate_to = even_sample(target, kGatePoints);
   const double voxel = static_cast<double>(source.voxel_m), reach = static_cast<double>(source.extent_m);
   Transform t = hypothesis.target_from_source;
+  auto weights = MatchWeights::by_roughness;
   for (int step = 0; step < kMaxSteps; ++step) {
     const float gate = gate_of_residuals(source, target, t, gate_from, gate_to, 0.5f * source.voxel_m);
-    const NormalEquations equations = both_ways(source, target, t, from, to, gate);
+    NormalEquations equations = both_ways(source, target, t, from, to, gate, weights);
+    if (step == 0) {
+      const NormalEquations alike = both_ways(source, target, t, from, to, gate);
+      if (!flat_surfaces_hold(equations, alike)) weights = MatchWeights::alike, equations = alike;
+    }
     if (equations.matches < kMinMatches) break;
     const Eigen::Vector3d middle = t * source.centroid.cast<double>();
     const Transform moved = solved_step(equations, middle, voxel, step_limit(source));

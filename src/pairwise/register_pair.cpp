@@ -280,7 +280,12 @@ void fill_information(const ScanModel& source, const ScanModel& target, const Tr
   add_point_to_plane(source, target, t, all, false, 0.5f * source.voxel_m, centre, e);
   result.rms_m = e.weight > 0 ? std::sqrt(e.sq_residual_sum / e.weight) : 0;
   evidence.rms_voxels = result.rms_m / static_cast<double>(source.voxel_m);
-  const double sigma = std::max(result.rms_m, kNoiseFloorVoxels * static_cast<double>(source.voxel_m));
+  NormalEquations weighed;  // as the pose was found
+  add_point_to_plane(source, target, t, all, false, 0.5f * source.voxel_m, centre, weighed, MatchWeights::by_roughness);
+  if (!flat_surfaces_hold(weighed, e)) weighed = e;
+  // Of a flat match: what roughness adds to the others is in their weights already.
+  const double rms_m = std::sqrt(weighed.sq_residual_sum / std::max(e.weight, 1e-12));
+  const double sigma = std::max(rms_m, kNoiseFloorVoxels * static_cast<double>(source.voxel_m));
   Eigen::Matrix3d cross;
   cross << 0, -c_source.z(), c_source.y(), c_source.z(), 0, -c_source.x(), -c_source.y(), c_source.x(), 0;
   Matrix6d m = Matrix6d::Zero();  // (v, w) about the centre in the target frame = m * (translation, rotation) in the
@@ -288,7 +293,7 @@ void fill_information(const ScanModel& source, const ScanModel& target, const Tr
   m.topLeftCorner<3, 3>() = t.linear();
   m.topRightCorner<3, 3>() = -t.linear() * cross;
   m.bottomRightCorner<3, 3>() = t.linear();
-  const Matrix6d information = m.transpose() * e.a * m / (kPatch * sigma * sigma);
+  const Matrix6d information = m.transpose() * weighed.a * m / (kPatch * sigma * sigma);
   result.information = 0.5 * (information + information.transpose());
   const Eigen::Vector3d stiffness =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(e.a.topLeftCorner<3, 3>(), Eigen::EigenvaluesOnly).eigenvalues();

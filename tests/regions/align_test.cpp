@@ -20,7 +20,7 @@ struct FrozenMatch {
 };
 
 std::vector<FrozenMatch> frozen_matches(const ScanModel& source, const ScanModel& target, const Transform& t,
-                                        float gate_m) {
+                                        float gate_m, MatchWeights weights) {
   std::vector<FrozenMatch> out;
   for (std::size_t i = 0; i < source.points.size(); ++i) {
     const Eigen::Vector3d p = t * source.points[i].cast<double>();
@@ -31,7 +31,10 @@ std::vector<FrozenMatch> frozen_matches(const ScanModel& source, const ScanModel
     const Eigen::Vector3d q = target.points[static_cast<std::size_t>(j)].cast<double>();
     const double ratio = n.dot(p - q) / static_cast<double>(gate_m);
     if (ratio * ratio >= 1) continue;
-    out.push_back({p, q, n, std::pow(1 - ratio * ratio, 2)});
+    const double roughness =
+        static_cast<double>(source.variation[i]) + static_cast<double>(target.variation[static_cast<std::size_t>(j)]);
+    const double certainty = weights == MatchWeights::alike ? 1 : 1 / (1 + std::pow(1.2 / 0.07, 2) * roughness);
+    out.push_back({p, q, n, certainty * std::pow(1 - ratio * ratio, 2)});
   }
   return out;
 }
@@ -46,14 +49,16 @@ double cost(const std::vector<FrozenMatch>& matches, const Eigen::Vector3d& cent
   return sum;
 }
 
-TEST(PointToPlane, NormalEquationsAreTheDerivativesOfTheCost) {
+class PointToPlaneBy : public ::testing::TestWithParam<MatchWeights> {};
+
+TEST_P(PointToPlaneBy, NormalEquationsAreTheDerivativesOfTheCost) {
   const HallPair pair;
   const Transform t = pose_of({0.03, -0.02, 0.04}, {0.004, -0.003, 0.006}) * pair.data.target_from_source;
   const Eigen::Vector3d centre = t * pair.source.centroid.cast<double>();
   const float gate = 0.3f;
   NormalEquations e;
-  add_point_to_plane(pair.source, pair.target, t, all_points(pair.source), false, gate, centre, e);
-  const auto matches = frozen_matches(pair.source, pair.target, t, gate);
+  add_point_to_plane(pair.source, pair.target, t, all_points(pair.source), false, gate, centre, e, GetParam());
+  const auto matches = frozen_matches(pair.source, pair.target, t, gate, GetParam());
   ASSERT_GT(e.matches, 300u);
   EXPECT_NEAR(static_cast<double>(e.matches), static_cast<double>(matches.size()), 5);
   EXPECT_NEAR(e.sq_residual_sum, cost(matches, centre, Vector6d::Zero()), 0.01 * e.sq_residual_sum);
@@ -76,6 +81,24 @@ TEST(PointToPlane, NormalEquationsAreTheDerivativesOfTheCost) {
     }
   }
   EXPECT_LT((e.a - e.a.transpose()).norm(), 1e-5 * scale_a);
+}
+
+INSTANTIATE_TEST_SUITE_P(Weights, PointToPlaneBy, ::testing::Values(MatchWeights::alike, MatchWeights::by_roughness));
+
+/// Equations of planes across the three axes with these stiffnesses.
+NormalEquations planes_across(const Eigen::Vector3d& stiffness) {
+  NormalEquations e;
+  e.a.topLeftCorner<3, 3>() = stiffness.asDiagonal();
+  e.weight = stiffness.sum();
+  return e;
+}
+
+TEST(PointToPlane, FlatSurfacesHoldWhereTheyAreManyAndFaceAllWays) {
+  const NormalEquations alike = planes_across({100, 200, 700});
+  EXPECT_TRUE(flat_surfaces_hold(planes_across({30, 60, 210}), alike));
+  EXPECT_FALSE(flat_surfaces_hold(planes_across({10, 20, 70}), alike)) << "a tenth of the weight";
+  EXPECT_FALSE(flat_surfaces_hold(planes_across({20, 180, 600}), alike)) << "what is rough held one direction";
+  EXPECT_TRUE(flat_surfaces_hold(planes_across({0, 0, 0}), planes_across({0, 0, 0})));
 }
 
 TEST(PointToPlane, StepsConvergeToTheTruth) {

@@ -8,7 +8,6 @@
 #include <iterator>
 #include <map>
 #include <set>
-#include <tuple>
 #include <utility>
 
 #include "base/parallel.h"
@@ -21,37 +20,6 @@ namespace {
 /// Believed on its own word: neither told where to look nor ambiguous until others agreed. Where rooms repeat,
 /// ambiguous links agree with the wrong one.
 bool strong(const SolvedLink& l) { return believed(l) && !l.link.guided && l.measured == Verdict::accepted; }
-
-using LinksOf = std::map<int, std::vector<const SolvedLink*>>;
-
-LinksOf strong_links_of(const Solution& solution) {
-  LinksOf of;
-  for (const SolvedLink& l : solution.links) {
-    if (!strong(l)) continue;
-    of[l.link.source].push_back(&l);
-    of[l.link.target].push_back(&l);
-  }
-  return of;
-}
-
-std::span<const SolvedLink* const> links_at(const LinksOf& links_of, int scan) {
-  const auto at = links_of.find(scan);
-  return at != links_of.end() ? std::span<const SolvedLink* const>(at->second) : std::span<const SolvedLink* const>();
-}
-
-int other_end(const SolvedLink& l, int scan) { return l.link.source == scan ? l.link.target : l.link.source; }
-
-/// Scans that hang together with any of `starts` over links between scans that are not `barred`, and over how many.
-std::map<int, int> distances(const LinksOf& links_of, std::vector<int> starts, const std::function<bool(int)>& barred) {
-  std::map<int, int> distance;
-  for (const int start : starts) distance.emplace(start, 0);
-  for (std::size_t k = 0; k < starts.size(); ++k)
-    for (const SolvedLink* l : links_at(links_of, starts[k])) {
-      const int next = other_end(*l, starts[k]);
-      if (!barred(next) && distance.try_emplace(next, distance[starts[k]] + 1).second) starts.push_back(next);
-    }
-  return distance;
-}
 
 /// Links of one scan that alone hold a branch of its part to it; on either side the scans and over how many links they
 /// hang on one of these links' ends.
@@ -66,6 +34,10 @@ struct Suspect {
     return std::ranges::any_of(
         links, [&](const SolvedLink* l) { return std::minmax(l->link.source, l->link.target) == std::minmax(a, b); });
   }
+  /// Whether a pair across tells about these links: not one that they hold, which has had its say.
+  [[nodiscard]] bool hears(const PosedPair& pair) const {
+    return separates(pair.source, pair.target) && !holds(pair.source, pair.target);
+  }
   /// The link that says most for it. They speak for the same place: where it is a room that equals the right one, all
   /// are wrong for one reason.
   [[nodiscard]] const PairResult& spokesman() const {
@@ -76,12 +48,11 @@ struct Suspect {
 
 /// Every believed link that is not strong and that strong ones do not span.
 void add_weak_links(std::vector<Suspect>& suspects, const Solution& solution, const LinksOf& links_of) {
-  const auto nobody = [](int) { return false; };
   for (const SolvedLink& l : solution.links) {
     if (!believed(l) || l.link.guided || strong(l)) continue;
-    Suspect suspect{l.link.target, {&l}, distances(links_of, {l.link.target}, nobody), {}};
+    Suspect suspect{l.link.target, {&l}, link_distances(links_of, {l.link.target}), {}};
     if (suspect.on_its_side.contains(l.link.source)) continue;
-    suspect.in_branch = distances(links_of, {l.link.source}, nobody);
+    suspect.in_branch = link_distances(links_of, {l.link.source});
     suspects.push_back(std::move(suspect));
   }
 }
@@ -89,7 +60,7 @@ void add_weak_links(std::vector<Suspect>& suspects, const Solution& solution, co
 /// For every scan the branches that its part falls into without it. A link that nothing spans comes once, by the
 /// smaller of its ends.
 std::vector<Suspect> suspects_of(const Solution& solution) {
-  const LinksOf links_of = strong_links_of(solution);
+  const LinksOf links_of = links_of_scans(solution, strong);
   std::vector<Suspect> suspects;
   add_weak_links(suspects, solution, links_of);
   for (const auto& [scan, links] : links_of) {
@@ -98,7 +69,7 @@ std::vector<Suspect> suspects_of(const Solution& solution) {
       if (seen.contains(other_end(*first, scan))) continue;
       Suspect suspect{scan, {}, {}, {}};
       const auto is_scan = [scan = scan](int id) { return id == scan; };
-      const auto branch = distances(links_of, {other_end(*first, scan)}, is_scan);
+      const auto branch = link_distances(links_of, {other_end(*first, scan)}, is_scan);
       std::vector<int> ends;
       for (const SolvedLink* l : links) {
         if (!branch.contains(other_end(*l, scan))) continue;
@@ -107,8 +78,8 @@ std::vector<Suspect> suspects_of(const Solution& solution) {
       }
       for (const auto& [id, distance] : branch) seen.insert(id);
       if (suspect.links.size() == 1 && ends.front() < scan) continue;
-      suspect.in_branch = distances(links_of, std::move(ends), is_scan);
-      suspect.on_its_side = distances(links_of, {scan}, [&](int id) { return branch.contains(id); });
+      suspect.in_branch = link_distances(links_of, std::move(ends), is_scan);
+      suspect.on_its_side = link_distances(links_of, {scan}, [&](int id) { return branch.contains(id); });
       suspects.push_back(std::move(suspect));
     }
   }
@@ -174,13 +145,9 @@ std::vector<RefutedLink> sentenced(std::vector<Accusation> accusations, std::spa
   if (accusations.empty()) return {};
   std::ranges::stable_sort(accusations, std::ranges::greater(), &Accusation::log_odds);
   const Accusation first = accusations.front();
-  const auto has_a_say = [](const Suspect& suspect, const PosedPair& pair) {
-    return suspect.separates(pair.source, pair.target) && !suspect.holds(pair.source, pair.target);
-  };
   const auto shares_a_witness = [&](const Accusation& other) {
     for (std::size_t k = 0; k < pairs.size(); ++k)
-      if (checks[k] && checks[k]->forbidden() && has_a_say(*first.suspect, pairs[k]) &&
-          has_a_say(*other.suspect, pairs[k]))
+      if (checks[k] && checks[k]->forbidden() && first.suspect->hears(pairs[k]) && other.suspect->hears(pairs[k]))
         return true;
     return false;
   };
@@ -229,9 +196,7 @@ std::vector<RefutedLink> refuted_bridge(const Solution& solution, std::span<cons
   const std::vector<std::optional<PoseCheck>> checks = check(pairs);
   std::vector<Accusation> accusations;
   for (const Suspect& suspect : suspects) {
-    const Testimony said = testimony_of(pairs, checks, [&](const PosedPair& pair) {
-      return suspect.separates(pair.source, pair.target) && !suspect.holds(pair.source, pair.target);
-    });
+    const Testimony said = testimony_of(pairs, checks, [&](const PosedPair& pair) { return suspect.hears(pair); });
     Testimony with_links = said;  // that several agree tells as well, for whether there is a case at all
     if (suspect.links.size() > 1) with_links.num_telling += suspect.links.size();
     if (with_links.refutes()) accusations.push_back({&suspect, said, log_odds_wrong(said, suspect.spokesman())});

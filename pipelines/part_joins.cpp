@@ -20,25 +20,33 @@ Summaries summaries_of(std::span<const OutlinedScan> scans) {
   return summaries;
 }
 
-std::map<int, int> link_distances(const Solution& solution, int from,
-                                  const std::function<bool(const SolvedLink&)>& counts) {
-  std::map<int, std::vector<int>> neighbours;
+LinksOf links_of_scans(const Solution& solution, const std::function<bool(const SolvedLink&)>& counts) {
+  LinksOf of;
   for (const SolvedLink& l : solution.links) {
     if (!counts(l)) continue;
-    neighbours[l.link.source].push_back(l.link.target);
-    neighbours[l.link.target].push_back(l.link.source);
+    of[l.link.source].push_back(&l);
+    of[l.link.target].push_back(&l);
   }
-  std::map<int, int> distance{{from, 0}};
-  std::vector<int> front{from};
-  while (!front.empty()) {
-    std::vector<int> next;
-    for (const int a : front) {
-      const auto of_a = neighbours.find(a);
-      if (of_a == neighbours.end()) continue;
-      for (const int b : of_a->second)
-        if (distance.try_emplace(b, distance[a] + 1).second) next.push_back(b);
+  return of;
+}
+
+int other_end(const SolvedLink& link, int scan) {
+  return link.link.source == scan ? link.link.target : link.link.source;
+}
+
+std::map<int, int> link_distances(const LinksOf& links_of, std::vector<int> starts,
+                                  const std::function<bool(int)>& barred) {
+  std::map<int, int> distance;
+  for (const int start : starts) distance.emplace(start, 0);
+  for (std::size_t k = 0; k < starts.size(); ++k) {
+    const int scan = starts[k];
+    const auto links = links_of.find(scan);
+    if (links == links_of.end()) continue;
+    for (const SolvedLink* l : links->second) {
+      const int next = other_end(*l, scan);
+      if (barred && barred(next)) continue;
+      if (distance.try_emplace(next, distance.at(scan) + 1).second) starts.push_back(next);
     }
-    front = std::move(next);
   }
   return distance;
 }
@@ -62,6 +70,7 @@ std::vector<GuidedPair> pairs_across(const std::map<int, int>& of_source, const 
 namespace {
 
 void find_pairs_across(std::vector<PartJoin>& joins, const Solution& solution, const Summaries& summaries) {
+  const LinksOf links_of = links_of_scans(solution, believed);
   parallel_for_index(joins.size(), 1, [&](std::size_t k) {
     const Link& link = joins[k].link->link;
     const PlacedScan *source = solution.find(link.source), *target = solution.find(link.target);
@@ -74,8 +83,8 @@ void find_pairs_across(std::vector<PartJoin>& joins, const Solution& solution, c
           from->component == source->component ? target_part_from_source_part : target_part_from_source_part.inverse();
       return orthonormalised(to->component_from_local.inverse() * to_part_from_from_part * from->component_from_local);
     };
-    joins[k].across = pairs_across(link_distances(solution, link.source, believed),
-                                   link_distances(solution, link.target, believed), summaries, posing);
+    joins[k].across = pairs_across(link_distances(links_of, {link.source}), link_distances(links_of, {link.target}),
+                                   summaries, posing);
   });
 }
 

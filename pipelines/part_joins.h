@@ -15,9 +15,15 @@ Summaries summaries_of(std::span<const OutlinedScan> scans);
 
 bool believed(const SolvedLink& link);
 
-/// Scans that hang together with `from` over links that `counts` admits, and over how many of them.
-std::map<int, int> link_distances(const Solution& solution, int from,
-                                  const std::function<bool(const SolvedLink&)>& counts);
+/// The links of each scan; a scan without any is missing. They point into the solution.
+using LinksOf = std::map<int, std::vector<const SolvedLink*>>;
+LinksOf links_of_scans(const Solution& solution, const std::function<bool(const SolvedLink&)>& counts);
+
+int other_end(const SolvedLink& link, int scan);
+
+/// Scans that hang together with any of `starts` over links between scans that are not `barred`, and over how many.
+std::map<int, int> link_distances(const LinksOf& links_of, std::vector<int> starts,
+                                  const std::function<bool(int)>& barred = {});
 
 /// Where a scan would stand: target_from_source between local frames; absent where the poses do not say.
 using Posing = std::function<std::optional<Transform>(int source, int target)>;

@@ -1,7 +1,6 @@
 #include "pairwise/register_pair.h"
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -295,9 +294,7 @@ void fill_information(const ScanModel& source, const ScanModel& target, const Tr
   m.bottomRightCorner<3, 3>() = t.linear();
   const Matrix6d information = m.transpose() * weighed.a * m / (kPatch * sigma * sigma);
   result.information = 0.5 * (information + information.transpose());
-  const Eigen::Vector3d stiffness =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(e.a.topLeftCorner<3, 3>(), Eigen::EigenvaluesOnly).eigenvalues();
-  evidence.observability = stiffness[2] > 0 ? std::max(0.0, stiffness[0]) / stiffness[2] : 0;
+  evidence.observability = observability(e);
 }
 
 // Residuals in metres, which sensors and tolerances are given in.

@@ -61,15 +61,17 @@ void add_point_to_plane(const ScanModel& source, const ScanModel& target, const 
   equations.b += b.cast<double>();
 }
 
+double observability(const NormalEquations& equations) {
+  const Eigen::Vector3d stiffness =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(equations.a.topLeftCorner<3, 3>(), Eigen::EigenvaluesOnly)
+          .eigenvalues();
+  return stiffness[2] > 0 ? std::max(0.0, stiffness[0]) / stiffness[2] : 0;
+}
+
 bool flat_surfaces_hold(const NormalEquations& by_roughness, const NormalEquations& alike) {
   constexpr double kAboutAsWell = 0.5, kLeastWeight = 0.15;
-  const auto least_share = [](const NormalEquations& e) {
-    const Eigen::Vector3d stiffness =
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(e.a.topLeftCorner<3, 3>(), Eigen::EigenvaluesOnly).eigenvalues();
-    return stiffness[2] > 0 ? std::max(0.0, stiffness[0]) / stiffness[2] : 0.0;
-  };
   return by_roughness.weight >= kLeastWeight * alike.weight &&
-         least_share(by_roughness) >= kAboutAsWell * least_share(alike);
+         observability(by_roughness) >= kAboutAsWell * observability(alike);
 }
 
 std::vector<float> distances_to_planes(const ScanModel& source, const ScanModel& target,

@@ -31,6 +31,10 @@ void add_point_to_plane(const ScanModel& source, const ScanModel& target, const 
                         std::span<const std::uint32_t> sample, bool coarse, float gate_m, const Eigen::Vector3d& centre,
                         NormalEquations& equations, MatchWeights weights = MatchWeights::alike);
 
+/// How well the worst direction of the place is held, as a share of the best: the ratio of the stiffness's eigenvalues;
+/// 0 where nothing holds it.
+double observability(const NormalEquations& equations);
+
 /// Whether there is enough that is flat: its weight is a share of what all matches weigh alike (in woods 0.04 to 0.11,
 /// elsewhere 0.18 to 0.67), and it fixes the place in all directions about as well, against the best one. Where stems
 /// and shrubs hold the scan, roughness is no reason to doubt them.

@@ -331,12 +331,13 @@ std::vector<char> on_loops(const Solver& s, const std::vector<int>& links) {
 /// A link that no loop confirms is worth what the pair stage's word is worth in this survey: where loops refute many
 /// of the links that they can judge, one more that they cannot judge joins nothing. True if any was taken out.
 bool doubt_bridges(Solver& s) {
-  const std::vector<char> in_loop = on_loops(s, accepted_voters(s));
+  const std::vector<int> voters = accepted_voters(s);
+  const std::vector<char> in_loop = on_loops(s, voters);
   const TrackRecord record = track_record(s, in_loop);
   if (record.judged < kFewestJudged || record.wrong <= record.expected) return false;
   const double scale = std::log((1 - record.wrong) / record.wrong) - std::log((1 - record.expected) / record.expected);
   const SpanningForest parts =
-      forest_of(s.num_nodes(), s.measurements, spanning_edges(s.num_nodes(), s.measurements, accepted_voters(s)));
+      forest_of(s.num_nodes(), s.measurements, spanning_edges(s.num_nodes(), s.measurements, voters));
   bool any = false;
   for (const int e : s.with_verdict(Verdict::accepted)) {
     if (in_loop[e] || s.link_of(e).link.by_hand == ByHand::added) continue;

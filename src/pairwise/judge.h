@@ -22,6 +22,7 @@ struct PairEvidence {
   double observability = 0;  ///< smallest over largest stiffness against translation, 0 = slides freely
   double num_supported = 0;  ///< voxel points on the other scan's surface, the smaller direction
   bool free_space = false;   ///< at least one scan has a known station
+  double passed_over = 0;    ///< score of a pose that explains more and that free space forbids; 0 without one
   /// Of the source points that face a target point near them, the shares this close to its plane; said, not weighed.
   double share_under_6mm = 0, share_under_20mm = 0;
 };
@@ -41,6 +42,11 @@ double contradicting_share(const PairResult& result);
 /// itself, or whose support other hypotheses share, less is too much, the less the more the scans overlap. False where
 /// nothing was measured.
 bool forbidden_by_free_space(const PairResult& result);
+
+/// By how much free space discounts the score of a pose against others of its pair: `overlap` of the smaller direction,
+/// `contradiction` of the larger one; 1 = not at all.
+double free_space_discount(double overlap, double contradiction);
+inline constexpr double kMostDiscount = 5;
 
 /// Verdict, probability and reason of `result`, from its evidence.
 void judge(const PairEvidence& evidence, const PairOptions& options, PairResult& result);

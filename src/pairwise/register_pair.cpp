@@ -507,6 +507,71 @@ class PairSearch {
   PairTrace* trace_;
 };
 
+// Overlap and contradiction of a pose over all points of both scans.
+struct BothWays {
+  double of_source = 0, of_target = 0, contradiction = 0, against = 0;
+  [[nodiscard]] double overlap() const { return std::min(of_source, of_target); }
+};
+BothWays both_ways(const ScanModel& source, const ScanModel& target, const Transform& target_from_source) {
+  const Pose3f pose = pose3f(target_from_source);
+  const DirectedScore forward = score_direction(source, target, pose, {}, 1, false);
+  const DirectedScore backward = score_direction(target, source, pose.inverse(), {}, 1, false);
+  return {static_cast<double>(forward.support), static_cast<double>(backward.support),
+          static_cast<double>(std::max(forward.contradiction, backward.contradiction)),
+          static_cast<double>(std::max(forward.against, backward.against))};
+}
+
+// What a pair is judged on: two levels of both scans.
+struct Models {
+  const ScanModel &source, &target, &fine_source, &fine_target;
+};
+
+// The first of `ranked`, polished to the end and judged. It is not empty.
+void assess(const Models& models, const std::vector<Hypothesis>& ranked, const PairOptions& options, double passed_over,
+            PairResult& result) {
+  constexpr std::size_t kFinalPoints = 20000;
+  constexpr int kFinalSteps = 5;
+  const auto& [source, target, fine_source, fine_target] = models;
+  Hypothesis best = ranked.front();
+  polish_closely_unless_worse(fine_source, fine_target, kFinalPoints, kFinalSteps, best);
+  const BothWays shares = both_ways(source, target, best.target_from_source);
+  result.target_from_source = best.target_from_source;
+  result.overlap_of_source = shares.of_source;
+  result.overlap_of_target = shares.of_target;
+  result.overlap = shares.overlap();
+  PairEvidence evidence;
+  evidence.score = best.score;
+  evidence.passed_over = passed_over;
+  note_rivals(source, ranked, evidence);
+  result.rivals = rivals_of(source, ranked);
+  evidence.support = std::min(best.source.support, best.target.support);
+  evidence.rare_support = std::min(best.source.rare_support, best.target.rare_support);
+  evidence.contradiction = shares.contradiction;
+  evidence.against = shares.against;
+  evidence.num_supported = std::min(best.source.support * static_cast<double>(source.points.size()),
+                                    best.target.support * static_cast<double>(target.points.size()));
+  evidence.free_space = source.scan.free_space.size > 0 || target.scan.free_space.size > 0;
+  fill_information(fine_source, fine_target, best.target_from_source, evidence, result);
+  fill_shares(fine_source, fine_target, best.target_from_source, evidence);
+  judge(evidence, options, result);
+}
+
+// Takes from the scores of `ranked` what free space says against the poses, as far down as that can change the first,
+// and ranks again. False, and all as before, if the first stays it or is a twin of what does.
+bool pass_over_forbidden(const Models& models, std::vector<Hypothesis>& ranked) {
+  std::vector<Hypothesis> again = ranked;
+  const double least = ranked.front().score / kMostDiscount;
+  for (Hypothesis& h : again) {
+    if (h.score < least) break;
+    const BothWays shares = both_ways(models.source, models.target, h.target_from_source);
+    h.score /= free_space_discount(shares.overlap(), shares.contradiction);
+  }
+  std::ranges::stable_sort(again, std::ranges::greater(), &Hypothesis::score);
+  if (same_basin(models.source, ranked.front().target_from_source, again.front().target_from_source)) return false;
+  ranked = std::move(again);
+  return true;
+}
+
 PairResult rejected(PairResult result, std::string reason) {
   result.verdict = Verdict::rejected;
   result.reason = std::move(reason);
@@ -548,31 +613,11 @@ PairResult register_pair(const ScanProduct& source_product, const ScanProduct& t
   const ScanModel fine_source(source_product.sampled, source_product.features, source_product.regions, level);
   const ScanModel fine_target(target_product.sampled, target_product.features, target_product.regions, level);
   search.settle(fine_source, fine_target, hypotheses);
-  Hypothesis best = hypotheses.front();
-  constexpr std::size_t kFinalPoints = 20000;
-  polish_closely_unless_worse(fine_source, fine_target, kFinalPoints, 5, best);
-  const Pose3f pose = pose3f(best.target_from_source);
-  const DirectedScore forward = score_direction(source, target, pose, {}, 1, false);
-  const DirectedScore backward = score_direction(target, source, pose.inverse(), {}, 1, false);
-  result.target_from_source = best.target_from_source;
-  result.overlap_of_source = static_cast<double>(forward.support);
-  result.overlap_of_target = static_cast<double>(backward.support);
-  result.overlap = std::min(result.overlap_of_source, result.overlap_of_target);
-  PairEvidence evidence;
-  evidence.score = best.score;
-  note_rivals(source, hypotheses, evidence);
-  result.rivals = rivals_of(source, hypotheses);
-  evidence.support = std::min(best.source.support, best.target.support);
-  evidence.rare_support = std::min(best.source.rare_support, best.target.rare_support);
-  evidence.contradiction =
-      std::max(static_cast<double>(forward.contradiction), static_cast<double>(backward.contradiction));
-  evidence.against = std::max(static_cast<double>(forward.against), static_cast<double>(backward.against));
-  evidence.num_supported = std::min(best.source.support * static_cast<double>(source.points.size()),
-                                    best.target.support * static_cast<double>(target.points.size()));
-  evidence.free_space = source.scan.free_space.size > 0 || target.scan.free_space.size > 0;
-  fill_information(fine_source, fine_target, best.target_from_source, evidence, result);
-  fill_shares(fine_source, fine_target, best.target_from_source, evidence);
-  judge(evidence, options, result);
+  const Models models{source, target, fine_source, fine_target};
+  assess(models, hypotheses, options, 0, result);
+  const double best_score = hypotheses.front().score;
+  if (forbidden_by_free_space(result) && pass_over_forbidden(models, hypotheses))
+    assess(models, hypotheses, options, best_score, result);
   watch.lap("verdict");
   return result;
 }

@@ -78,6 +78,27 @@ TEST(Verdict, MuchAgainstAPoseLeavesItToTheLoops) {
   EXPECT_EQ(result.verdict, Verdict::accepted) << result.reason;
 }
 
+TEST(Verdict, APoseThatAForbiddenOneGaveWayToIsLeftToTheLoops) {
+  PairEvidence e = good_evidence();
+  e.passed_over = 1.5 * e.score;
+  PairResult result;
+  judge(e, PairOptions{}, result);
+  EXPECT_EQ(result.verdict, Verdict::ambiguous);
+  EXPECT_LE(result.probability, 0.5);
+  EXPECT_NE(result.reason.find("50 % more"), std::string::npos) << result.reason;
+  EXPECT_LE(probability_against(result, 0), 0.5) << "the terms are all in the result";
+}
+
+TEST(FreeSpaceDiscount, TakesMostFromWhatSeenThroughSpaceForbids) {
+  EXPECT_EQ(free_space_discount(0.6, 0), 1);
+  EXPECT_EQ(free_space_discount(0.6, 0.005), 1);
+  const double laid = free_space_discount(0.6, 0.02);
+  EXPECT_GT(laid, 1);
+  EXPECT_EQ(free_space_discount(0.05, 0.02), 1) << "what little is shared contradicts at its edges";
+  EXPECT_EQ(free_space_discount(0.6, 0.06), kMostDiscount);
+  EXPECT_GT(kMostDiscount, laid);
+}
+
 TEST(Verdict, ARivalIsNamedByWhereItLies) {
   PairEvidence e = good_evidence();
   e.rival_score = 0.9 * e.score, e.rival_voxels = 42, e.rival_deg = 91;

@@ -126,6 +126,42 @@ TEST(RegisterPair, APriorIsJudgedLikeAnyHypothesis) {
   EXPECT_NE(misled.verdict, Verdict::accepted) << "a user's word is no evidence";
 }
 
+// Two rooms of one plan and furniture, and a door between them: laid on each other they explain more than through the
+// door, but for the wall that would close it.
+TEST(RegisterPair, ARoomLaidOnItsEqualIsPassedOver) {
+  testing::Scene rooms;
+  const auto wall = [&](double x, double y_from, double y_to, double z_from, double z_to) {
+    rooms.add_rectangle({x, y_from, z_from}, {0, y_to - y_from, 0}, {0, 0, z_to - z_from});
+  };
+  for (const double x : {0.0, 8.0}) {
+    for (const double z : {0.0, 3.0}) rooms.add_rectangle({x, 0, z}, {8, 0, 0}, {0, 6, 0});
+    for (const double y : {0.0, 6.0}) rooms.add_rectangle({x, y, 0}, {8, 0, 0}, {0, 0, 3});
+    rooms.add_box({x + 2, 1, 0.4}, {1.6, 0.8, 0.8});
+    rooms.add_box({x + 5.5, 5.2, 0.9}, {0.6, 1.2, 1.8});
+    rooms.add_box({x + 1.2, 4.6, 0.5}, {0.9, 0.7, 1.0}, rotation_from_vector({0, 0, 0.4}));
+  }
+  wall(0, 0, 6, 0, 3), wall(16, 0, 6, 0, 3);
+  wall(8, 0, 1.45, 0, 3), wall(8, 3.55, 6, 0, 3), wall(8, 1.45, 3.55, 2.3, 3);  // around the door
+  testing::SamplingSetup setup;
+  setup.options.station = "origin";
+  const auto scanned = [&](double x, std::uint64_t seed) {
+    return testing::product_of(testing::scan_scene(rooms, pose_of({x, 2.5, 1.6}), {60000, 1e6, 0.004, seed}),
+                               kHallVoxel, setup);
+  };
+  const ScanProduct source = scanned(4, 1), target = scanned(12, 2);
+  const Transform truth = pose_of({-8, 0, 0});
+  const auto registered = [&](const std::vector<Transform>& priors) {
+    return register_pair(source, target, testing::no_search(), priors);
+  };
+  const PairResult both = registered({Transform::Identity(), truth});
+  ASSERT_TRUE(both.target_from_source);
+  EXPECT_LT(testing::largest_displacement_m(source, *both.target_from_source, truth), 0.5 * kHallVoxel) << both.reason;
+  EXPECT_GT(evidence_of(both, "passed_over"), evidence_of(both, "score")) << "the other one explains more";
+  EXPECT_NE(both.verdict, Verdict::accepted) << "free space alone decided";
+  EXPECT_EQ(evidence_of(registered({Transform::Identity()}), "passed_over"), 0) << "nothing else to take";
+  EXPECT_EQ(evidence_of(registered({truth}), "passed_over"), 0);
+}
+
 TEST(RegisterPair, TheTraceTellsWhatEachStageProposed) {
   const PartialOverlap pair = partial_overlap(1, {0, 0, 2.4});
   PairTrace trace;

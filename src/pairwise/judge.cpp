@@ -108,7 +108,7 @@ double contradicting_share(const PairResult& result) { return contradicting_shar
 
 bool forbidden_by_free_space(const PairResult& result) {
   const PairEvidence e = terms_of(result);
-  if (vetoed(e)) return true;
+  if (vetoed(e) || e.passed_over > 0) return true;
   constexpr double kSure = 0.95;
   // Halls of equal bays are sure of the wrong bay: but what supports them there supports other hypotheses as well. Of
   // 138 such poses beyond the limit 2 were right; of streets with passers-by, beyond it too, all have more than 0.7.
@@ -153,12 +153,12 @@ void judge(const PairEvidence& e, const PairOptions& options, PairResult& result
   }
   result.verdict = result.probability >= options.ambiguous_probability ? Verdict::ambiguous : Verdict::rejected;
   constexpr double kClearMargin = 1.5;
-  if (forbidden || (doubtful(e) && result.probability >= kDoubtfulProbability))
-    result.reason =
-        fmt::format("{:.1f} % of the points stand where the other station saw through", 100 * e.contradiction);
-  else if (e.passed_over > e.score && e.score >= kClearMargin * e.rival_score)
+  if (e.passed_over > 0)
     result.reason = fmt::format("a pose that explains {:.0f} % more stands where the other station saw through",
                                 100 * (e.passed_over / std::max(e.score, 1e-9) - 1));
+  else if (forbidden || (doubtful(e) && result.probability >= kDoubtfulProbability))
+    result.reason =
+        fmt::format("{:.1f} % of the points stand where the other station saw through", 100 * e.contradiction);
   else if (unobserved(e) && e.support > 0)
     result.reason = fmt::format(
         "nothing fixes the place along one direction: {:.0f} % of the smaller scan is explained, but it slides",

@@ -39,8 +39,9 @@ double contradicting_share(const PairResult& result);
 
 /// Whether free space forbids the pose: too much of a scan stands where the other station saw through. No support, and
 /// no other link that agrees, outweighs it: rooms that repeat agree with each other. Of a pair that is not sure by
-/// itself, or whose support other hypotheses share, less is too much, the less the more the scans overlap. False where
-/// nothing was measured.
+/// itself, or whose support other hypotheses share, less is too much, the less the more the scans overlap. True as well
+/// of a pose that only took the place of a forbidden one: in an office of 160 such poses agreed with each other on the
+/// wrong lobby. False where nothing was measured.
 bool forbidden_by_free_space(const PairResult& result);
 
 /// By how much free space discounts the score of a pose against others of its pair: `overlap` of the smaller direction,

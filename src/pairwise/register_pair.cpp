@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "base/digest.h"
@@ -17,6 +18,7 @@
 #include "regions/align.h"
 #include "regions/grow.h"
 #include "regions/overlap_boundary.h"
+#include "regions/passers_by.h"
 
 namespace isthmus {
 
@@ -507,6 +509,18 @@ class PairSearch {
   PairTrace* trace_;
 };
 
+// Shares of all points of `from`; of those in seen-through space without people that walked on.
+DirectedScore score_without_passers_by(const ScanModel& from, const ScanModel& to, const Pose3f& to_from) {
+  std::vector<std::uint32_t> all(from.points.size()), contradicted;
+  std::iota(all.begin(), all.end(), 0U);
+  const PointVerdicts verdicts = judge_points(from, to, to_from, all, false);
+  DirectedScore score = shares_of(verdicts);
+  for (const std::uint32_t i : all)
+    if (verdicts[i] == PointVerdict::contradicted) contradicted.push_back(i);
+  score.contradiction -= static_cast<float>(num_of_passers_by(from, contradicted)) / static_cast<float>(all.size());
+  return score;
+}
+
 // Overlap and contradiction of a pose over all points of both scans.
 struct BothWays {
   double of_source = 0, of_target = 0, contradiction = 0, against = 0;
@@ -514,8 +528,8 @@ struct BothWays {
 };
 BothWays both_ways(const ScanModel& source, const ScanModel& target, const Transform& target_from_source) {
   const Pose3f pose = pose3f(target_from_source);
-  const DirectedScore forward = score_direction(source, target, pose, {}, 1, false);
-  const DirectedScore backward = score_direction(target, source, pose.inverse(), {}, 1, false);
+  const DirectedScore forward = score_without_passers_by(source, target, pose);
+  const DirectedScore backward = score_without_passers_by(target, source, pose.inverse());
   return {static_cast<double>(forward.support), static_cast<double>(backward.support),
           static_cast<double>(std::max(forward.contradiction, backward.contradiction)),
           static_cast<double>(std::max(forward.against, backward.against))};

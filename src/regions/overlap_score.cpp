@@ -36,17 +36,10 @@ PointVerdicts judge_points(const ScanModel& from, const ScanModel& to, const Pos
   return out;
 }
 
-DirectedScore score_direction(const ScanModel& from, const ScanModel& to, const Pose3f& to_from,
-                              std::span<const std::uint32_t> sample, std::size_t stride, bool coarse) {
-  const std::size_t n = sample.empty() ? from.points.size() : sample.size();
-  const std::size_t tried = (n + stride - 1) / stride;
-  std::array<std::size_t, 4> counts{};
-  const auto index_of = [&](std::size_t k) { return sample.empty() ? k * stride : sample[k * stride]; };
-  for_each_lookup(from, to, lookup_of(to, coarse), to_from, tried, index_of,
-                  [&](std::size_t k, const Eigen::Vector3f& p, std::int32_t j) {
-                    const PointVerdict v = judge(from, to, to_from, index_of(k), p, j, tolerance_of(to, coarse));
-                    ++counts[static_cast<std::size_t>(v)];
-                  });
+namespace {
+
+using Counts = std::array<std::size_t, 4>;  // by verdict
+DirectedScore shares_of(const Counts& counts, std::size_t tried) {
   DirectedScore out;
   if (tried == 0) return out;
   const auto share = [&](PointVerdict v) {
@@ -56,6 +49,28 @@ DirectedScore score_direction(const ScanModel& from, const ScanModel& to, const 
   out.contradiction = share(PointVerdict::contradicted);
   out.against = share(PointVerdict::against);
   return out;
+}
+
+}  // namespace
+
+DirectedScore shares_of(const PointVerdicts& verdicts) {
+  Counts counts{};
+  for (const PointVerdict v : verdicts) ++counts[static_cast<std::size_t>(v)];
+  return shares_of(counts, verdicts.size());
+}
+
+DirectedScore score_direction(const ScanModel& from, const ScanModel& to, const Pose3f& to_from,
+                              std::span<const std::uint32_t> sample, std::size_t stride, bool coarse) {
+  const std::size_t n = sample.empty() ? from.points.size() : sample.size();
+  const std::size_t tried = (n + stride - 1) / stride;
+  Counts counts{};
+  const auto index_of = [&](std::size_t k) { return sample.empty() ? k * stride : sample[k * stride]; };
+  for_each_lookup(from, to, lookup_of(to, coarse), to_from, tried, index_of,
+                  [&](std::size_t k, const Eigen::Vector3f& p, std::int32_t j) {
+                    const PointVerdict v = judge(from, to, to_from, index_of(k), p, j, tolerance_of(to, coarse));
+                    ++counts[static_cast<std::size_t>(v)];
+                  });
+  return shares_of(counts, tried);
 }
 
 }  // namespace isthmus

@@ -41,6 +41,9 @@ using PointVerdicts = std::vector<PointVerdict>;
 PointVerdicts judge_points(const ScanModel& from, const ScanModel& to, const Pose3f& to_from,
                            std::span<const std::uint32_t> sample, bool coarse);
 
+/// The shares of these verdicts; nothing if there are none.
+DirectedScore shares_of(const PointVerdicts& verdicts);
+
 /// Shares of these verdicts over every `stride`-th of `sample` (indices into from's points; all points if empty).
 DirectedScore score_direction(const ScanModel& from, const ScanModel& to, const Pose3f& to_from,
                               std::span<const std::uint32_t> sample, std::size_t stride, bool coarse);

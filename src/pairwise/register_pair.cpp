@@ -515,6 +515,7 @@ DirectedScore score_without_passers_by(const ScanModel& from, const ScanModel& t
   std::iota(all.begin(), all.end(), 0U);
   const PointVerdicts verdicts = judge_points(from, to, to_from, all, false);
   DirectedScore score = shares_of(verdicts);
+  if (score.contradiction == 0) return score;
   for (const std::uint32_t i : all)
     if (verdicts[i] == PointVerdict::contradicted) contradicted.push_back(i);
   score.contradiction -= static_cast<float>(num_of_passers_by(from, contradicted)) / static_cast<float>(all.size());
@@ -570,19 +571,27 @@ void assess(const Models& models, const std::vector<Hypothesis>& ranked, const P
   judge(evidence, options, result);
 }
 
-// Takes from the scores of `ranked` what free space says against the poses, as far down as that can change the first,
-// and ranks again. False, and all as before, if the first stays it or is a twin of what does.
+// Puts in front the best of `ranked` that free space does not speak against, if it comes first once those before it
+// have lost what free space says against them; their scores stay divided. False, and all as before, if there is none or
+// if it is a twin of the first.
 bool pass_over_forbidden(const Models& models, std::vector<Hypothesis>& ranked) {
-  std::vector<Hypothesis> again = ranked;
-  const double least = ranked.front().score / kMostDiscount;
-  for (Hypothesis& h : again) {
-    if (h.score < least) break;
+  const auto discount_of = [&](const Hypothesis& h) {
     const BothWays shares = both_ways(models.source, models.target, h.target_from_source);
-    h.score /= free_space_discount(shares.overlap(), shares.contradiction);
+    return free_space_discount(shares.overlap(), shares.contradiction);
+  };
+  std::vector<double> discounts{discount_of(ranked.front())};
+  const double least = ranked.front().score / discounts.front();
+  while (discounts.back() > 1) {
+    const std::size_t next = discounts.size();
+    if (next == ranked.size() || ranked[next].score < least) return false;
+    discounts.push_back(discount_of(ranked[next]));
   }
-  std::ranges::stable_sort(again, std::ranges::greater(), &Hypothesis::score);
-  if (same_basin(models.source, ranked.front().target_from_source, again.front().target_from_source)) return false;
-  ranked = std::move(again);
+  const std::size_t winner = discounts.size() - 1;
+  if (same_basin(models.source, ranked.front().target_from_source, ranked[winner].target_from_source)) return false;
+  for (std::size_t k = 0; k < winner; ++k) ranked[k].score /= discounts[k];
+  const auto first = ranked.begin(), at = first + static_cast<std::ptrdiff_t>(winner);
+  std::rotate(first, at, at + 1);
+  std::stable_sort(first + 1, ranked.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
   return true;
 }
 
@@ -630,7 +639,7 @@ PairResult register_pair(const ScanProduct& source_product, const ScanProduct& t
   const Models models{source, target, fine_source, fine_target};
   assess(models, hypotheses, options, 0, result);
   const double best_score = hypotheses.front().score;
-  if (forbidden_by_free_space(result) && pass_over_forbidden(models, hypotheses))
+  if (!options.leaves_out("free_space") && forbidden_by_free_space(result) && pass_over_forbidden(models, hypotheses))
     assess(models, hypotheses, options, best_score, result);
   watch.lap("verdict");
   return result;

@@ -31,7 +31,7 @@ struct Measurement {
   double floor_rad = 0;   ///< the same for the rotation
   double log_odds = 0;    ///< log p/(1-p) of the pair stage's probability, clipped; 0 for guided links
   bool accepted = false;  ///< by the pair stage; otherwise ambiguous
-  bool votes = true;      ///< false for guided links, and for those that free space forbids
+  bool votes = true;      ///< false for guided links, and those that free space forbids or alone decided
   /// Accepted by the pair stage, whose word counts for little in this survey: treated as ambiguous.
   bool doubted = false;
   double overlap = 0;  ///< breaks ties

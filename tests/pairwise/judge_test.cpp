@@ -78,7 +78,7 @@ TEST(Verdict, MuchAgainstAPoseLeavesItToTheLoops) {
   EXPECT_EQ(result.verdict, Verdict::accepted) << result.reason;
 }
 
-TEST(Verdict, APoseThatAForbiddenOneGaveWayToIsLeftToTheLoops) {
+TEST(Verdict, APoseThatAForbiddenOneGaveWayToIsNotAcceptedAndHasNoVote) {
   PairEvidence e = good_evidence();
   e.passed_over = 1.5 * e.score;
   PairResult result;
@@ -86,6 +86,7 @@ TEST(Verdict, APoseThatAForbiddenOneGaveWayToIsLeftToTheLoops) {
   EXPECT_EQ(result.verdict, Verdict::ambiguous);
   EXPECT_LE(result.probability, 0.5);
   EXPECT_NE(result.reason.find("50 % more"), std::string::npos) << result.reason;
+  EXPECT_TRUE(forbidden_by_free_space(result));
   EXPECT_LE(probability_against(result, 0), 0.5) << "the terms are all in the result";
 }
 

@@ -59,7 +59,7 @@ TEST(PassersBy, WhicheverWayTheScannerHeldItsHead) {
   EXPECT_EQ(room.counted(), room.of_body.size());
 }
 
-TEST(PassersBy, APieceOfAWallIsNobody) {
+TEST(PassersBy, AFlatPieceOfAWallIsNobody) {
   const Room room({-4.5, 1, 1.2}, {0.3, 0.9, 1.8}, kUpright);
   ASSERT_GT(room.of_body.size(), 20U);
   EXPECT_EQ(room.counted(), 0U);
@@ -81,9 +81,16 @@ TEST(PassersBy, WithoutAVerticalNobodyIsCounted) {
 
 TEST(PassersBy, WhereMuchIsContradictedPeopleAreNoExplanation) {
   const Room room(kPlace, kPerson, kUpright);
-  std::vector<std::uint32_t> much = room.of_body;
-  for (std::uint32_t i = 0; i < room.model.points.size(); i += 5) much.push_back(i);
-  EXPECT_EQ(num_of_passers_by(room.model, much), 0U);
+  const auto with_others = [&](double share) {
+    std::vector<std::uint32_t> indices = room.of_body;
+    for (std::uint32_t i = 0; i < room.model.points.size(); ++i)
+      if (static_cast<double>(indices.size()) < share * static_cast<double>(room.model.points.size()) &&
+          room.model.points[i].x() < -1)
+        indices.push_back(i);
+    return indices;
+  };
+  EXPECT_EQ(num_of_passers_by(room.model, with_others(0.14)), room.of_body.size());
+  EXPECT_EQ(num_of_passers_by(room.model, with_others(0.16)), 0U);
   EXPECT_EQ(num_of_passers_by(room.model, {}), 0U);
 }
 

@@ -24,20 +24,6 @@ float tolerance_of(const ScanModel& to, bool coarse) {
   return kFreeToleranceVoxels * to.voxel_m * (coarse ? 2.0f : 1.0f);
 }
 
-}  // namespace
-
-PointVerdicts judge_points(const ScanModel& from, const ScanModel& to, const Pose3f& to_from,
-                           std::span<const std::uint32_t> sample, bool coarse) {
-  PointVerdicts out(sample.size());
-  for_each_lookup(from, to, lookup_of(to, coarse), to_from, sample,
-                  [&](std::size_t k, const Eigen::Vector3f& p, std::int32_t j) {
-                    out[k] = judge(from, to, to_from, sample[k], p, j, tolerance_of(to, coarse));
-                  });
-  return out;
-}
-
-namespace {
-
 using Counts = std::array<std::size_t, 4>;  // by verdict
 DirectedScore shares_of(const Counts& counts, std::size_t tried) {
   DirectedScore out;
@@ -52,6 +38,16 @@ DirectedScore shares_of(const Counts& counts, std::size_t tried) {
 }
 
 }  // namespace
+
+PointVerdicts judge_points(const ScanModel& from, const ScanModel& to, const Pose3f& to_from,
+                           std::span<const std::uint32_t> sample, bool coarse) {
+  PointVerdicts out(sample.size());
+  for_each_lookup(from, to, lookup_of(to, coarse), to_from, sample,
+                  [&](std::size_t k, const Eigen::Vector3f& p, std::int32_t j) {
+                    out[k] = judge(from, to, to_from, sample[k], p, j, tolerance_of(to, coarse));
+                  });
+  return out;
+}
 
 DirectedScore shares_of(const PointVerdicts& verdicts) {
   Counts counts{};

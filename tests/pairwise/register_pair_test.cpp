@@ -163,6 +163,30 @@ TEST(RegisterPair, ARoomLaidOnItsEqualIsPassedOver) {
       << "nothing speaks against the best";
 }
 
+TEST(RegisterPair, PeopleWhoWalkedOnDoNotContradict) {
+  const testing::Scene empty = testing::furnished_hall(1);
+  testing::Scene with_people = empty;
+  for (const double x : {-5.0, -1.0, 4.5}) with_people.add_box({x, 0.4, 0.87}, {0.5, 0.4, 1.74});
+  testing::SamplingSetup setup;
+  setup.options.station = "origin";
+  const auto scanned = [&](const testing::Scene& scene, double x, std::uint64_t seed) {
+    return testing::product_of(testing::scan_scene(scene, pose_of({x, -0.8, 1.7}), {60000, 1e6, 0.004, seed}),
+                               kHallVoxel, setup);
+  };
+  ScanProduct source = scanned(with_people, -2.5, 1);
+  const ScanProduct target = scanned(empty, 2.5, 2);
+  const auto contradiction = [&](bool knows_up) {
+    DominantAxis axis;
+    axis.direction = Eigen::Vector3f::UnitZ();
+    axis.upright = knows_up;
+    source.features.axes = {axis};
+    const std::vector<Transform> truth{pose_of({-5, 0, 0})};
+    const PairResult result = register_pair(source, target, testing::no_search(), truth);
+    return evidence_of(result, "contradiction");
+  };
+  EXPECT_LT(contradiction(true), 0.5 * contradiction(false)) << "who stands tells a person";
+}
+
 TEST(RegisterPair, TheTraceTellsWhatEachStageProposed) {
   const PartialOverlap pair = partial_overlap(1, {0, 0, 2.4});
   PairTrace trace;
